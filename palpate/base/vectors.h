@@ -1,0 +1,32 @@
+#pragma once
+// Vectors and matrices with GLSL's words, from glm.
+#include <glm/glm.hpp>
+
+namespace palpate {
+
+using glm::dmat3;
+using glm::dvec3;
+using glm::ivec3;
+using glm::mat3;
+using glm::mat4;
+using glm::uvec2;
+using glm::uvec3;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+
+/// A box along the axes. A new one is empty: `low` above `high`.
+struct Bounds {
+    vec3 low = vec3(1e30f);
+    vec3 high = vec3(-1e30f);
+
+    bool empty() const { return !(low.x <= high.x); }
+    vec3 size() const { return empty() ? vec3(0) : high - low; }
+    vec3 centre() const { return 0.5f * (low + high); }
+    void include(vec3 p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+};
+
+}  // namespace palpate

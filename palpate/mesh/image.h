@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace palpate {
+
+/// A picture: eight bits each of red, green, blue and alpha (sRGB, as shown), rows from the top down.
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> pixels;  // 4 · width · height bytes
+};
+
+/// Throws Error if the file cannot be written.
+void write_png(const Image& image, const std::filesystem::path& path);
+
+}  // namespace palpate
