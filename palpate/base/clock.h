@@ -10,13 +10,13 @@ inline double now() {
 
 /// Adds the seconds of its own life to a sum: `{ Timed timed(seconds.map); deform(...); }`
 class Timed {
-   public:
+ public:
     explicit Timed(double& sum) : sum_(sum), start_(now()) {}
     ~Timed() { sum_ += now() - start_; }
     Timed(const Timed&) = delete;
     Timed& operator=(const Timed&) = delete;
 
-   private:
+ private:
     double& sum_;
     double start_;
 };

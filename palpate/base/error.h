@@ -9,12 +9,12 @@ namespace palpate {
 /// what() is a single line, "WHAT in WHERE; REMEDY": what is wrong, in which file or device, and what to do.
 /// Wrong use of the library asserts instead, and a simulation step never throws.
 class Error : public std::runtime_error {
-   public:
+ public:
     Error(std::string_view what, std::string_view where, std::string_view remedy)
-        : std::runtime_error(one_line(std::string(what) + " in " + std::string(where) + "; " +
-                                      std::string(remedy))) {}
+        : std::runtime_error(
+              one_line(std::string(what) + " in " + std::string(where) + "; " + std::string(remedy))) {}
 
-   private:
+ private:
     static std::string one_line(std::string text) {
         for (char& c : text)
             if (c == '\n' || c == '\r') c = ' ';

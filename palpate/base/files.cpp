@@ -1,12 +1,12 @@
 #include "palpate/base/files.h"
 
+#include "palpate/base/error.h"
+
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <memory>
-
-#include "palpate/base/error.h"
 
 namespace palpate {
 namespace {

@@ -10,9 +10,9 @@ namespace palpate {
 /// The whole text of a file. Throws Error if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 
-/// Writes a file whole or not at all: `write` fills a temporary file beside it, which takes the final name only
-/// when everything has reached the disk. If `write` throws, or the disk is full, the temporary file is removed,
-/// an older file under the final name stays as it was, and Error is thrown.
+/// Writes a file whole or not at all: `write` fills a temporary file beside it, which takes the final name
+/// only when everything has reached the disk. If `write` throws, or the disk is full, the temporary file is
+/// removed, an older file under the final name stays as it was, and Error is thrown.
 void write_file(const std::filesystem::path& path, const std::function<void(std::FILE*)>& write);
 
 /// write_file for a text that is ready.

@@ -1,5 +1,7 @@
 #include "palpate/base/pipe.h"
 
+#include "palpate/base/error.h"
+
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -11,8 +13,6 @@
 #include <cstring>
 #include <filesystem>
 #include <sstream>
-
-#include "palpate/base/error.h"
 
 extern char** environ;
 
@@ -84,8 +84,7 @@ void Pipe::close_and_wait() {
     if (input_ >= 0) close(input_);
     input_ = -1;
     if (process_ > 0)
-        while (waitpid(process_, &status_, 0) < 0 && errno == EINTR) {
-        }
+        while (waitpid(process_, &status_, 0) < 0 && errno == EINTR) {}
     process_ = -1;
 }
 

@@ -8,10 +8,10 @@ namespace palpate {
 /// True if a program of this name is on the PATH.
 bool has_program(const std::string& name);
 
-/// The standard input of another program that runs beside ours. Its output goes nowhere; its complaints go to our
-/// standard error. Move-free: make one where it is used.
+/// The standard input of another program that runs beside ours. Its output goes nowhere; its complaints go to
+/// our standard error. Move-free: make one where it is used.
 class Pipe {
-   public:
+ public:
     /// Starts `words[0]` with the other words as its arguments; no shell is involved. Throws Error.
     explicit Pipe(std::vector<std::string> words);
     ~Pipe();
@@ -24,7 +24,7 @@ class Pipe {
     /// Closes the pipe and waits for the program to end. Throws Error if it failed.
     void finish();
 
-   private:
+ private:
     void close_and_wait();
     std::string program_;
     int input_ = -1;

@@ -1,0 +1,24 @@
+#pragma once
+#include "palpate/body/body.h"
+#include "palpate/mesh/mesh.h"
+
+#include <array>
+#include <vector>
+
+namespace palpate {
+
+/// Half of a face of a filled cell that looks at an empty place.
+struct HullTriangle {
+    std::array<int, 3> nodes;  // counter-clockwise seen from outside
+    int cell;                  // the cell it belongs to
+    vec3 normal;               // at rest: along an axis of the grid
+};
+
+/// The outside of a lattice: two triangles for each face of a filled cell that no filled cell covers.
+std::vector<HullTriangle> hull(const Body& body);
+
+/// The hull as a surface, with sharp edges: a node on an edge or a corner gives one vertex for each
+/// direction.
+Mesh hull_mesh(const Body& body);
+
+}  // namespace palpate

@@ -1,0 +1,208 @@
+#include "palpate/body/lattice.h"
+
+#include "palpate/base/error.h"
+#include "palpate/body/cells.h"
+#include "palpate/body/grid.h"
+#include "palpate/mesh/solid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr int samples = 4;           // along each edge of a cell, to find how much of it is inside
+constexpr double most_cells = 30e6;  // in the box around a body
+
+// The 18 neighbours of a node; a link and its opposite stand side by side.
+constexpr ivec3 offsets[18] = {{1, 0, 0},  {-1, 0, 0},  {0, 1, 0},  {0, -1, 0},  {0, 0, 1},  {0, 0, -1},
+                               {1, 1, 0},  {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0},  {1, 0, 1},  {-1, 0, -1},
+                               {1, 0, -1}, {-1, 0, 1},  {0, 1, 1},  {0, -1, -1}, {0, 1, -1}, {0, -1, 1}};
+
+// Corner k of a cell: x in the lowest bit, then y, then z. Seen from a node, the cell whose corner k it is.
+constexpr ivec3 corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
+
+// The nodes of a grid that exist: 0 at the corners of filled cells, -1 elsewhere.
+GridIndex corners_of(const Cells& cells) {
+    GridIndex grid(ivec3(0), cells.dims + 1);
+    for_each_place(cells.dims, [&](ivec3 c) {
+        if (cells.at(c))
+            for (int k = 0; k < 8; ++k) grid[c + corner(k)] = 0;
+    });
+    return grid;
+}
+
+int count(const GridIndex& grid) {
+    return int(grid.numbers.size() - std::count(grid.numbers.begin(), grid.numbers.end(), -1));
+}
+
+int filled_around(const Cells& cells, ivec3 p) {
+    int filled = 0;
+    for (int k = 0; k < 8; ++k) filled += cells.at(p - corner(k));
+    return filled;
+}
+
+// Filled cells that hold both ends of the link from p: of four for a link along an axis, of two for a
+// diagonal.
+int filled_beside(const Cells& cells, ivec3 p, ivec3 offset) {
+    int filled = 0;
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 cell = p - corner(k), end = p + offset - cell;
+        const bool holds =
+            glm::all(glm::greaterThanEqual(end, ivec3(0))) && glm::all(glm::lessThanEqual(end, ivec3(1)));
+        filled += holds && cells.at(cell);
+    }
+    return filled;
+}
+
+// How much of a link there is, in quarters. Where no cell is filled beside it, it exists only if one of its
+// ends belongs to no filled cell at all, and is then as strong as beside a single cell.
+int quarters(const Cells& cells, ivec3 p, ivec3 offset) {
+    const int whole =
+        glm::dot(vec3(offset), vec3(offset)) < 1.5f ? 4 : 2;  // cells around a link inside the body
+    const int filled = filled_beside(cells, p, offset);
+    const bool thin = filled_around(cells, p) == 0 || filled_around(cells, p + offset) == 0;
+    return (filled > 0 ? filled : thin ? 1 : 0) * 4 / whole;
+}
+
+bool equal_links(const Material& material) {
+    return material.links == Links::equal ||
+           (material.links == Links::automatic && material.youngs_modulus <= 0);
+}
+
+// Spreads the mass over the nodes: by how many of the eight cells around each are filled, or evenly.
+void weigh(Body& body, const Cells& cells, const Material& material, double volume) {
+    std::vector<double> part(body.count(), 1);
+    if (!equal_links(material))
+        for (std::size_t i = 0; i < body.count(); ++i)
+            part[i] = std::max(filled_around(cells, body.springs.at[i]), 1) / 8.0;
+    double parts = 0;
+    for (double p : part) parts += p;
+    const double total = material.mass > 0 ? material.mass
+                         : volume > 0      ? material.density * volume
+                                           : material.density * std::pow(body.spacing, 3) * parts;
+    for (std::size_t i = 0; i < body.count(); ++i) body.inverse_mass[i] = float(parts / (total * part[i]));
+}
+
+// Nodes at the grid's points, the springs between them, and the masses. `volume`: of the solid, m³; 0 if the
+// cells' own is meant.
+Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, const Material& material,
+              double volume) {
+    assert((material.youngs_modulus > 0) != (material.stiffness > 0));
+    assert((material.density > 0) != (material.mass > 0));
+    Body body;
+    body.spacing = spacing;
+    body.damping = material.damping;
+    const float stiffness =
+        material.stiffness > 0 ? material.stiffness : 0.4f * material.youngs_modulus * spacing;
+    for (ivec3 offset : offsets)
+        body.springs.links.push_back({offset, stiffness, spacing * glm::length(vec3(offset))});
+
+    for_each_place(grid.dims, [&](ivec3 p) {
+        if (grid[p] < 0) return;
+        grid[p] = int(body.count());
+        body.positions.push_back(origin + spacing * vec3(p));
+        body.springs.at.push_back(p);
+    });
+    body.inverse_mass.resize(body.count());
+    weigh(body, cells, material, volume);
+
+    for (ivec3 p : body.springs.at) {
+        std::uint64_t shares = 0;
+        for (std::size_t l = 0; l < std::size(offsets); ++l)
+            if (grid.at(p + offsets[l]) >= 0)
+                shares |= std::uint64_t(equal_links(material) ? 4 : quarters(cells, p, offsets[l])) << 3 * l;
+        body.springs.shares.push_back(shares);
+    }
+
+    for_each_place(cells.dims, [&](ivec3 c) {
+        if (!cells.at(c)) return;
+        std::array<int, 8>& nodes = body.cells.emplace_back();
+        for (int k = 0; k < 8; ++k) nodes[k] = grid[c + corner(k)];
+    });
+    return body;
+}
+
+// A box of cells around a mesh, with at least half an empty cell on every side.
+struct Frame {
+    vec3 origin;
+    ivec3 dims;
+};
+
+Frame frame_around(const Bounds& box, float spacing) {
+    const dvec3 cells = glm::ceil(dvec3(box.size()) / double(spacing)) + 1.0;
+    if (!(cells.x * cells.y * cells.z <= most_cells))
+        throw Error(
+            fmt::format("a spacing of {} m would need {:.3g} cells", spacing, cells.x * cells.y * cells.z),
+            "the lattice", "use a larger spacing, or fewer nodes");
+    const ivec3 dims(cells);
+    return {box.centre() - 0.5f * spacing * vec3(dims), dims};
+}
+
+// The fraction of each cell inside the mesh, from samples³ points in it.
+std::vector<float> inside_fractions(const SignedDistance& distance, const Frame& frame, float spacing) {
+    const float fine = spacing / samples;
+    std::vector<float> part(std::size_t(frame.dims.x) * frame.dims.y * frame.dims.z, 0);
+    const ivec3 slab(frame.dims.x * samples, frame.dims.y * samples, samples);
+    for (int z = 0; z < frame.dims.z; ++z) {
+        const vec3 first = frame.origin + vec3(0.5f * fine) + vec3(0, 0, float(z) * spacing);
+        const std::vector<float> d = distance.sample(first, fine, slab);
+        for (std::size_t i = 0; i < d.size(); ++i) {
+            const std::size_t x = i % slab.x / samples, y = i / slab.x % slab.y / samples;
+            if (d[i] < 0) part[(std::size_t(z) * frame.dims.y + y) * frame.dims.x + x] += 1;
+        }
+    }
+    for (float& p : part) p /= samples * samples * samples;
+    return part;
+}
+
+}  // namespace
+
+Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& progress) {
+    const Bounds box = bounds(mesh);
+    const double volume = std::abs(palpate::volume(mesh));
+    if (!(volume > 0))
+        throw Error("a surface that encloses no volume", "the lattice", "close it, or use a cloth");
+
+    float spacing =
+        settings.spacing > 0 ? settings.spacing : float(std::cbrt(volume / std::max(settings.nodes, 1)));
+    frame_around(box, spacing);  // refuses what would be too large before anything is built
+    const SignedDistance distance(mesh, spacing / samples);
+    auto fill_at = [&](float h) {
+        const Frame frame = frame_around(box, h);
+        return std::pair(frame, fill(frame.dims, inside_fractions(distance, frame, h)));
+    };
+    auto assemble_at = [&](float h) {
+        const auto [frame, cells] = fill_at(h);
+        return assemble(corners_of(cells), cells, frame.origin, h, settings.material, volume);
+    };
+    if (settings.spacing > 0) return assemble_at(spacing);
+
+    // The number of nodes falls with the cube of the spacing, roughly and in jumps: follow the cube root
+    // until it is met within half a percent, and keep the best of a dozen tries.
+    float best = spacing;
+    double best_miss = 1e30;
+    for (int attempt = 0; attempt < 12 && best_miss > 0.005; ++attempt) {
+        const double ratio = double(count(corners_of(fill_at(spacing).second))) / settings.nodes;
+        if (const double miss = std::abs(std::log(ratio)); miss < best_miss) {
+            best_miss = miss;
+            best = spacing;
+        }
+        if (progress) progress("fitting the lattice", (attempt + 1) / 12.0);
+        spacing *= float(std::cbrt(std::clamp(ratio, 0.05, 20.0)));
+    }
+    return assemble_at(best);
+}
+
+Body lattice(ivec3 dims, float spacing, const Material& material) {
+    Cells cells{glm::max(dims - 1, ivec3(0)), {}};
+    cells.filled.assign(std::size_t(cells.dims.x) * cells.dims.y * cells.dims.z, 1);
+    GridIndex grid(ivec3(0), dims);
+    std::fill(grid.numbers.begin(), grid.numbers.end(), 0);
+    return assemble(std::move(grid), cells, vec3(0), spacing, material, 0);
+}
+
+}  // namespace palpate

@@ -1,0 +1,28 @@
+#pragma once
+#include "palpate/base/progress.h"
+#include "palpate/body/body.h"
+#include "palpate/body/material.h"
+#include "palpate/mesh/mesh.h"
+
+namespace palpate {
+
+struct LatticeSettings {
+    int nodes = 20'000;  // how many nodes to aim for; what comes out is the nearest that a spacing can give
+    float spacing = 0;   // m; if given, it decides and `nodes` does not
+    Material material;
+};
+
+/// A mass-spring lattice that fills a closed mesh: cubic cells, and at their corners nodes with 18 springs
+/// each, to the neighbours along the axes and the face diagonals (2005, section 3.1). With a Young's modulus
+/// E the springs get 0.4 · E · spacing. Parts thinner than a cell become one cell thick, so that nothing
+/// vanishes and nothing comes apart; the mass is density × the mesh's volume whatever the cells' own volume
+/// is. Throws Error if the mesh encloses no volume or the lattice would have more than 30 million cells in
+/// its box.
+Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& progress = {});
+
+/// A plain box of `dims` nodes along each axis, node (0, 0, 0) at the origin. A dimension of one node is a
+/// sheet, two are a thread: there no cell is filled, and the springs are as strong as along the edge of a
+/// solid.
+Body lattice(ivec3 dims, float spacing, const Material& material);
+
+}  // namespace palpate

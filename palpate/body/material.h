@@ -1,0 +1,33 @@
+#pragma once
+#include "palpate/base/names.h"
+
+#include <span>
+
+namespace palpate {
+
+/// How strong the springs are at the rim of a body, where some of the cells around them are empty
+/// (architecture.md, "The lattice is a solid").
+enum class Links {
+    automatic,  // cells where a Young's modulus is given, equal where a stiffness is
+    cells,      // each spring weighs by how many of the cells around it are filled: the bulk's modulus at any
+                // thickness
+    equal,      // every spring alike, as in the 2005 paper: thin parts are too soft
+};
+
+inline std::span<const Named<Links>> names(Links) {
+    static constexpr Named<Links> all[] = {
+        {Links::automatic, "automatic"}, {Links::cells, "cells"}, {Links::equal, "equal"}};
+    return all;
+}
+
+/// What a body is made of. Give one of the first two and one of the next two; a zero says "not given".
+struct Material {
+    float youngs_modulus = 0;  // Pa; brain about 1e3 to 1e4, skin 1e5. Poisson's ratio is always 1/4
+    float stiffness = 0;       // N/m of each spring
+    float density = 0;         // kg/m³; water is 1000
+    float mass = 0;            // kg, of the whole body
+    float damping = 0;         // 1/s; free motion decays as exp(-damping · t / 2)
+    Links links = Links::automatic;
+};
+
+}  // namespace palpate

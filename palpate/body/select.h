@@ -1,0 +1,23 @@
+#pragma once
+#include "palpate/body/body.h"
+
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+// Ways to point at nodes of a body at rest. Each returns node numbers in rising order.
+
+/// The nodes in the lowest `fraction` of the body's height along `down`; 0.15 is the lowest 15 %.
+std::vector<int> nodes_below(const Body& body, float fraction, vec3 down);
+
+/// The nodes within `radius` of a point; 0 gives the nearest node alone.
+std::vector<int> nodes_near(const Body& body, vec3 point, float radius = 0);
+
+/// The nodes in a box, its faces included.
+std::vector<int> nodes_in(const Body& body, const Bounds& box);
+
+/// Holds these nodes where they are, for ever: their inverse mass becomes 0.
+void pin(Body& body, std::span<const int> nodes);
+
+}  // namespace palpate

@@ -1,0 +1,74 @@
+#include "palpate/base/files.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "palpate/base/error.h"
+#include "tests/scratch.h"
+
+namespace palpate {
+namespace {
+
+TEST(Files, WhatIsWrittenIsRead) {
+    Scratch scratch;
+    const std::string text("a\0b\n\xff", 5);
+    write_text(scratch / "file", text);
+    EXPECT_EQ(read_text(scratch / "file"), text);
+    write_text(scratch / "file", "");
+    EXPECT_EQ(read_text(scratch / "file"), "");
+    EXPECT_EQ(scratch.entries(), 1u);
+}
+
+TEST(Files, AFailureLeavesTheOldFileAndNothingElse) {
+    Scratch scratch;
+    write_text(scratch / "file", "old");
+    EXPECT_THROW(write_file(scratch / "file",
+                            [](std::FILE* file) {
+                                std::fputs("half", file);
+                                throw Error("no more", "memory", "stop");
+                            }),
+                 Error);
+    EXPECT_EQ(read_text(scratch / "file"), "old");
+    EXPECT_EQ(scratch.entries(), 1u);
+}
+
+TEST(Files, AFullDiskIsAnErrorWithNothingLeft) {
+    // /dev/full takes opening and buffering but no byte. Reached through a link with the temporary file's name.
+    Scratch scratch;
+    const auto file = scratch / "file";
+    std::filesystem::create_symlink("/dev/full", file.string() + ".part" + std::to_string(getpid()));
+    try {
+        write_text(file, std::string(1 << 20, 'x'));
+        FAIL() << "written";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("make room"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(scratch.entries(), 0u);
+}
+
+TEST(Files, MissingPlacesAreNamed) {
+    Scratch scratch;
+    for (auto attempt : {+[](const std::filesystem::path& p) { read_text(p); },
+                         +[](const std::filesystem::path& p) { write_text(p, "x"); }})
+        try {
+            attempt(scratch / "no" / "such");
+            FAIL();
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("such"), std::string::npos);
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        }
+    EXPECT_THROW(read_text(scratch / "."), Error);
+    write_text(scratch / "file", "");
+    EXPECT_THROW(make_folder(scratch / "file" / "folder"), Error);
+    EXPECT_NO_THROW(make_folder(scratch / "a" / "b"));
+    EXPECT_NO_THROW(make_folder(scratch / "a" / "b"));
+}
+
+TEST(Error, IsAlwaysOneLine) {
+    const Error error("a\nb", "c\rd", "e\n");
+    EXPECT_STREQ(error.what(), "a b in c d; e ");
+}
+
+}  // namespace
+}  // namespace palpate
