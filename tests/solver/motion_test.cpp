@@ -1,0 +1,389 @@
+// The reference solver against closed form, for every integrator.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "palpate/base/error.h"
+#include "palpate/body/lattice.h"
+#include "palpate/body/select.h"
+#include "palpate/solver/reference/reference.h"
+#include "palpate/solver/solver.h"
+#include "palpate/solver/stability.h"
+#include "tests/forces.h"
+#include "tests/shapes.h"
+
+namespace palpate {
+namespace {
+
+const Material tissue{.youngs_modulus = 5000, .density = 1000, .damping = 3};
+const Material undamped{.youngs_modulus = 5000, .density = 1000};
+
+class Motion : public ::testing::TestWithParam<Integrator> {
+   protected:
+    Simulation simulation(double step = 0) const {
+        Simulation s;
+        s.integrator = GetParam();
+        s.step = step;
+        return s;
+    }
+    Simulation weightless(double step = 0) const {
+        Simulation s = simulation(step);
+        s.gravity = vec3(0);
+        return s;
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Every, Motion, ::testing::Values(Integrator::semi_implicit_euler, Integrator::verlet),
+                         [](const auto& info) {
+                             return info.param == Integrator::verlet ? "verlet" : "semi_implicit_euler";
+                         });
+
+dvec3 momentum(const Body& body, const State& state) {
+    dvec3 sum(0);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.inverse_mass[i] > 0) sum += state.velocities[i] / double(body.inverse_mass[i]);
+    return sum;
+}
+
+// Two nodes and the one spring between them.
+Body pair(float stiffness, float mass, float damping, float stretch) {
+    Body body = lattice({2, 1, 1}, 0.1f, {.stiffness = stiffness, .mass = 2 * mass, .damping = damping});
+    body.positions[1].x += stretch;
+    return body;
+}
+
+TEST_P(Motion, OneSpringHasItsPeriod) {
+    const float k = 50, m = 0.2f, stretch = 0.001f;
+    for (float c : {0.0f, 2.0f}) {
+        const Body body = pair(k, m, c, stretch);
+        // Stretch x of the pair: m x'' = -2 k x - m c x'.
+        const double w = std::sqrt(2.0 * k / m - c * c / 4.0);
+        auto solver = make_reference<double>(body, weightless(1.0 / 4096), 0);
+        double worst = 0;
+        for (int i = 1; i <= 200; ++i) {
+            solver->step(1.0 / 64);
+            const double t = i / 64.0;
+            const double expected = stretch * std::exp(-c * t / 2) * (std::cos(w * t) + c / (2 * w) * std::sin(w * t));
+            const State s = solver->state();
+            const double x = glm::distance(s.positions[0], s.positions[1]) - 0.1;
+            if (const double e = std::abs(x - expected); !(e <= worst)) worst = e;
+        }
+        EXPECT_LE(worst, GetParam() == Integrator::verlet ? 1e-6 : 1e-5) << c;
+    }
+}
+
+TEST_P(Motion, ConvergesWithItsOrder) {
+    const int order = GetParam() == Integrator::verlet ? 2 : 1;
+    Body body = lattice({4, 3, 3}, 0.05f, {.youngs_modulus = 5000, .density = 1000, .damping = 2});
+    pin(body, nodes_in(body, {vec3(-1), vec3(0.001f, 1, 1)}));
+    auto end = [&](int steps) {
+        auto solver = make_reference<double>(body, simulation(0.0625 / steps), 0);
+        solver->step(0.0625);
+        return solver->state();
+    };
+    const State truth = end(8192);
+    double before = 0;
+    for (int steps = 32; steps <= 256; steps *= 2) {
+        const State s = end(steps);
+        double error = 0, speed_error = 0;
+        for (std::size_t i = 0; i < body.count(); ++i) {
+            error = std::max(error, glm::distance(s.positions[i], truth.positions[i]));
+            speed_error = std::max(speed_error, glm::distance(s.velocities[i], truth.velocities[i]));
+        }
+        if (before > 0) EXPECT_LE(std::abs(std::log2(before / error) - order), 0.15) << steps;
+        EXPECT_LE(speed_error, 40 * error / 0.0625 + 1e-12);
+        before = error;
+    }
+}
+
+TEST_P(Motion, FreeFall) {
+    const Body body = lattice({3, 4, 2}, 0.01f, undamped);
+    auto solver = make_reference<double>(body, simulation(1.0 / 1024), 0);
+    solver->step(0.5);
+    const State s = solver->state();
+    const double dt = 1.0 / 1024, g = 9.81f, t = 0.5;
+    // Semi-implicit Euler falls g t dt / 2 further than the parabola: its own closed form.
+    const double fallen = GetParam() == Integrator::verlet ? g * t * t / 2 : g * t * (t + dt) / 2;
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        EXPECT_LE(std::abs(body.positions[i].y - s.positions[i].y - fallen), 1e-6);
+        EXPECT_LE(std::abs(s.velocities[i].y + g * t), 1e-6);
+    }
+}
+
+TEST_P(Motion, TerminalSpeedUnderDamping) {
+    const Body body = lattice({3, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .damping = 20});
+    auto solver = make_solver(body, simulation());
+    for (int i = 0; i < 120; ++i) solver->step(1.0 / 60);
+    for (dvec3 v : solver->state().velocities) EXPECT_LE(std::abs(v.y + 9.81 / 20), 1e-4);
+}
+
+TEST_P(Motion, MomentumStaysWithoutAnOuterForce) {
+    Body body = lattice({5, 7, 6}, 0.01f, undamped);
+    for (std::size_t i = 0; i < body.count(); ++i) body.positions[i] *= 1 + 0.1f * std::sin(float(i));
+    auto solver = make_solver(body, weightless());
+    double largest = 0;
+    for (int i = 0; i < 60; ++i) {
+        solver->step(1.0 / 60);
+        const State s = solver->state();
+        double scale = 0;
+        for (std::size_t n = 0; n < body.count(); ++n)
+            scale += glm::length(s.velocities[n]) / double(body.inverse_mass[n]);
+        largest = std::max(largest, glm::length(momentum(body, s)) / scale);
+    }
+    EXPECT_LE(largest, 1e-4);
+}
+
+TEST_P(Motion, RestStaysAtRest) {
+    const Mesh mesh = ellipsoid({0.05f, 0.04f, 0.06f}, 30);
+    const Body body = lattice(mesh, {.nodes = 800, .material = tissue});
+    auto solver = make_solver(body, weightless());
+    const double step = solver->longest_step({});
+    for (int i = 0; i < 100; ++i) solver->step(100 * step);  // 10,000 steps
+    const State s = solver->state();
+    double moved = 0, fastest = 0;
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        if (const double d = glm::distance(s.positions[i], dvec3(body.positions[i])); !(d <= moved)) moved = d;
+        fastest = std::max(fastest, glm::length(s.velocities[i]));
+    }
+    EXPECT_LE(moved, 1e-6 * 0.12);
+    EXPECT_LE(fastest, 1e-5);
+}
+
+TEST_P(Motion, APinnedNodeNeverMoves) {
+    Body body = lattice({4, 4, 4}, 0.01f, tissue);
+    const std::vector<int> held = {0, 5, 17, 63};
+    pin(body, held);
+    Simulation s = simulation();
+    s.colliders = {Plane{{0, 1, 0}, 0.02f}, Sphere{{0.01f, 0.01f, 0.01f}, 0.02f}};
+    auto solver = make_solver(body, s);
+    const Press press{{0, 0, 0}, {0.1f, 0, 0}, 0.02f, 100};
+    for (int i = 0; i < 60; ++i) solver->step(1.0 / 60, {&press, 1});
+    for (int node : held) {
+        EXPECT_EQ(solver->nodes().positions[std::size_t(node)], body.positions[std::size_t(node)]);
+        EXPECT_EQ(solver->state().velocities[std::size_t(node)], dvec3(0));
+    }
+}
+
+TEST_P(Motion, PlaneAndSphereHoldTheBody) {
+    const Body body = lattice({5, 5, 5}, 0.01f, tissue);
+    Simulation s = simulation();
+    const vec3 centre(0.02f, -0.06f, 0.02f);
+    s.colliders = {Plane{{0, 1, 0}, -0.05f}, Sphere{centre, 0.05f}};
+    auto solver = make_solver(body, s);
+    for (int i = 0; i < 240; ++i) {
+        solver->step(1.0 / 60);
+        for (vec3 p : solver->nodes().positions) {
+            ASSERT_GE(p.y, -0.05f - 1e-6f);
+            ASSERT_GE(glm::distance(p, centre), 0.05f - 1e-6f);
+        }
+    }
+}
+
+TEST_P(Motion, OnAPlaneAtRestTheGroundCarriesTheWeight) {
+    // Frictionless, so only the height is held: the lowest layer stays on the plane and nothing moves any more.
+    const Body body = lattice({4, 4, 4}, 0.01f, {.youngs_modulus = 20000, .density = 1000, .damping = 20});
+    Simulation s = simulation();
+    s.colliders = {Plane{{0, 1, 0}, 0}};
+    auto solver = make_solver(body, s);
+    for (int i = 0; i < 300; ++i) solver->step(1.0 / 60);
+    EXPECT_LE(solver->step(1.0 / 60).largest_speed, 1e-3);
+    const std::vector<dvec3> forces = spring_forces(body, solver->state().positions);
+    double up = 0;  // the springs press the lowest layer down by the weight of all that stands on it
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.springs.at[i].y == 0) up -= forces[i].y;
+    double carried = 0;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.springs.at[i].y > 0) carried += 9.81 / double(body.inverse_mass[i]);
+    EXPECT_LE(std::abs(up / carried - 1), 0.01);
+}
+
+TEST_P(Motion, TheReactionOfAPressIsTheMomentumItGives) {
+    for (float c : {0.0f, 4.0f}) {
+        Material material = undamped;
+        material.damping = c;
+        const Body body = lattice({6, 6, 6}, 0.01f, material);
+        auto solver = make_solver(body, weightless());
+        dvec3 given(0), lost(0);
+        for (int i = 0; i < 30; ++i) {
+            const float t = float(i) / 60;
+            const Press press{{0.025f + 0.02f * t, 0.065f - 0.03f * t, 0.03f}, {0.02f, -0.03f, 0}, 0.012f, 300};
+            const Stats stats = solver->step(1.0 / 60, {&press, 1});
+            given -= stats.reactions[0];
+        }
+        const dvec3 now = momentum(body, solver->state());
+        EXPECT_GT(glm::length(given), 1e-4);
+        if (c == 0) EXPECT_LE(glm::length(now - given), 1e-4 * glm::length(given));
+        // With damping the body keeps only a part of it.
+        if (c > 0) EXPECT_LT(glm::length(now), glm::length(given));
+    }
+}
+
+TEST_P(Motion, ATipPressesAsHardAsItsStiffnessSays) {
+    // A tip much wider than the lattice lies flat on all of it: stiffness / (π r²) for each metre and square metre.
+    Body body = lattice({9, 3, 9}, 0.01f, {.youngs_modulus = 1e5f, .density = 1000, .damping = 50});
+    pin(body, nodes_in(body, {vec3(-1), vec3(1, 0.0101f, 1)}));  // two layers held, so that the top gives little
+    const float radius = 5, depth = 1e-4f;
+    const float k = 200 * 3.14159265f * radius * radius / 0.01f;  // 200 N/m on each square centimetre and one node
+    const Press press{{0.04f, 0.02f + radius - depth, 0.04f}, vec3(0), radius, k};
+    EXPECT_NEAR(contact_stiffness(press, 0.01f), 2.0f, 1e-4f);
+    auto solver = make_solver(body, weightless());
+    const Stats stats = solver->step(1e-5, {&press, 1});
+    double expected = 0;
+    for (vec3 p : body.positions)
+        expected += 2.0 * std::max(0.0, double(radius) - glm::distance(dvec3(p), dvec3(press.centre)));
+    EXPECT_GT(expected, 0);
+    // (Floats hold a radius of 5 m to half a micrometre; the depth is 100.)
+    const double duration = GetParam() == Integrator::verlet ? 0.5e-5 : 1e-5;  // Verlet's first kick is half a step
+    EXPECT_LE(std::abs(stats.reactions[0].y / duration / expected - 1), 0.02);
+}
+
+TEST_P(Motion, TheSameRunTwiceGivesTheSameBits) {
+    const Body body = lattice(ellipsoid({0.05f, 0.04f, 0.06f}, 30), {.nodes = 900, .material = tissue});
+    auto end = [&] {
+        auto solver = make_solver(body, simulation());
+        const Press press{{0, 0, 0.065f}, {0, 0, -0.01f}, 0.015f, 300};
+        for (int i = 0; i < 30; ++i) solver->step(1.0 / 60, {&press, 1});
+        return solver->state();
+    };
+    const State a = end(), b = end();
+    EXPECT_EQ(a.positions, b.positions);
+    EXPECT_EQ(a.velocities, b.velocities);
+}
+
+TEST_P(Motion, EnergyIsKeptWithoutDamping) {
+    Body body = lattice({4, 4, 4}, 0.01f, undamped);
+    for (vec3& p : body.positions) p *= 1.02f;
+    auto solver = make_reference<double>(body, weightless(), highest_frequency(body));
+    const double start = energy(body, solver->state()).elastic;
+    double least = 1e9, most = 0;
+    for (int i = 0; i < 600; ++i) {
+        solver->step(1.0 / 60);
+        const Energy e = energy(body, solver->state());
+        least = std::min(least, e.kinetic + e.elastic);
+        most = std::max(most, e.kinetic + e.elastic);
+    }
+    EXPECT_LE(most / start, GetParam() == Integrator::verlet ? 1.15 : 1.6);
+    EXPECT_GE(least / start, GetParam() == Integrator::verlet ? 0.85 : 0.6);
+}
+
+TEST_P(Motion, OddSizesRun) {
+    for (ivec3 d : {ivec3(0), ivec3(1), ivec3(2, 1, 1), ivec3(1, 3, 7), ivec3(8, 2, 9), ivec3(3, 16, 1)}) {
+        const Body body = lattice(d, 0.01f, tissue);
+        Simulation s = simulation();
+        s.colliders = {Plane{{0, 1, 0}, -0.05f}};
+        auto solver = make_solver(body, s);
+        for (int i = 0; i < 30; ++i) {
+            const Stats stats = solver->step(1.0 / 60);
+            EXPECT_FALSE(stats.diverged);
+            EXPECT_GE(stats.steps, 1);
+        }
+        EXPECT_EQ(solver->nodes().positions.size(), body.count());
+    }
+}
+
+// ---- stability ------------------------------------------------------------------------------------------------------
+
+TEST(Stability, HighestFrequencyInClosedForm) {
+    const Body two = pair(50, 0.2f, 0, 0);
+    EXPECT_LE(std::abs(highest_frequency(two) / std::sqrt(2 * 50 / 0.2) - 1), 1e-6);
+    // A thread of n equal masses: 2 √(k/m) cos(π / 2n).
+    const Body thread = lattice({12, 1, 1}, 0.1f, {.stiffness = 50, .mass = 12 * 0.2f});
+    const double expected = 2 * std::sqrt(50 / 0.2) * std::cos(3.14159265 / 24);
+    EXPECT_LE(std::abs(highest_frequency(thread) / expected - 1), 0.01);
+    // The inside of a lattice: 12 k/m; the rim, with its shares, may vibrate a little faster.
+    const Body solid = lattice({12, 12, 12}, 0.01f, undamped);
+    const double inside = std::sqrt(12 * 0.4 * 5000 * 0.01 / (1000 * 1e-6));
+    EXPECT_GE(highest_frequency(solid) / inside, 0.95);
+    EXPECT_LE(highest_frequency(solid) / inside, 1.3);
+    EXPECT_EQ(highest_frequency(lattice({1, 1, 1}, 1, tissue)), 0);
+}
+
+// Where the bound says: 2 % below it a shaken lattice goes on for ever, 2 % above it blows up.
+TEST_P(Motion, TheStabilityBoundIsWhereItIs) {
+    for (float c : {0.0f, 30.0f}) {
+        Material material = undamped;
+        material.damping = c;
+        Body body = lattice({6, 5, 7}, 0.01f, material);
+        const double frequency = highest_frequency(body);
+        const double bound = longest_step(GetParam(), frequency, c);
+        for (std::size_t i = 0; i < body.count(); ++i)
+            body.positions[i] += 1e-6f * vec3(std::sin(7.0f * i), std::cos(5.0f * i), std::sin(3.0f * i));
+        auto blows_up = [&](double step) {
+            auto solver = make_reference<double>(body, weightless(step), frequency);
+            for (int i = 0; i < 200; ++i)
+                if (solver->step(100 * step).diverged) return true;
+            return false;
+        };
+        EXPECT_FALSE(blows_up(0.97 * bound)) << c;
+        EXPECT_TRUE(blows_up(1.03 * bound)) << c;
+    }
+}
+
+TEST_P(Motion, AStepAboveTheBoundIsRefusedByName) {
+    const Body body = lattice({6, 6, 6}, 0.01f, tissue);
+    const double bound = longest_step(GetParam(), highest_frequency(body), body.damping);
+    Simulation s = simulation(1.2 * bound);
+    try {
+        make_solver(body, s);
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(name_of(GetParam())), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("--force"), std::string::npos) << error.what();
+    }
+    s.force = true;
+    s.gravity = vec3(0);
+    Body shaken = body;
+    shaken.positions[7].x += 1e-4f;
+    auto solver = make_solver(shaken, s);
+    bool diverged = false;
+    for (int i = 0; i < 600 && !diverged; ++i) {
+        const State before = solver->state();
+        diverged = solver->step(1.0 / 60).diverged;
+        if (diverged) EXPECT_EQ(solver->state().positions, before.positions);  // the last good state is kept
+    }
+    EXPECT_TRUE(diverged);
+    for (vec3 p : solver->nodes().positions) EXPECT_LE(glm::length(p), 10);  // fails for NaN too
+}
+
+TEST(Stability, TooManyStepsAFrameNameTheRemedy) {
+    const Body body = lattice({4, 4, 4}, 0.001f, {.youngs_modulus = 1e9f, .density = 1000});
+    try {
+        make_solver(body, {});
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("verlet"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("softer"), std::string::npos);
+    }
+}
+
+TEST(Stability, TooManyCollidersAreRefused) {
+    const Body body = lattice({2, 2, 2}, 0.01f, tissue);
+    Simulation s;
+    s.colliders.assign(9, Plane{});
+    EXPECT_THROW(make_solver(body, s), Error);
+}
+
+// A change of the frame's length in the middle does not disturb Verlet: its kicks know how far velocities lag.
+TEST(Verlet, KeepsItsOrderWhenTheStepChanges) {
+    const Body body = pair(50, 0.2f, 1, 0.001f);
+    auto error = [&](int n) {
+        Simulation s;
+        s.gravity = vec3(0);
+        s.step = 1;
+        auto solver = make_reference<double>(body, s, 0);
+        double t = 0;
+        for (int i = 0; i < n; ++i) {
+            const double dt = (i % 3 + 1) * 0.25 / (2 * n);  // steps of three lengths, by turns
+            solver->step(dt);
+            t += dt;
+        }
+        const double w = std::sqrt(500 - 0.25);
+        const double expected = 0.001 * std::exp(-t / 2) * (std::cos(w * t) + 1 / (2 * w) * std::sin(w * t));
+        const State state = solver->state();
+        return std::abs(glm::distance(state.positions[0], state.positions[1]) - 0.1 - expected);
+    };
+    EXPECT_LE(std::abs(std::log2(error(192) / error(384)) - 2), 0.4);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,83 @@
+// node.inl and pass.inl are also GLSL: compute and transform-feedback shaders around the same text compile.
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/gl/context.h"
+#include "palpate/gl/program.h"
+
+namespace palpate {
+namespace {
+
+const std::string folder = PALPATE_SOURCE_DIR "/palpate/solver/";
+
+std::string physics() {
+    return "#define FN\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define Real3 vec3\n"
+           "#define select(c, a, b) ((c) ? (a) : (b))\n" +
+           read_text(folder + "pass.inl") + "layout(std140, binding = 0) uniform Uniforms { Pass pass; };\n";
+}
+
+std::string compute_shader() {
+    return "#version 430 core\nlayout(local_size_x = 64) in;\n" + physics() + R"(
+        struct Stored { vec4 position, velocity; };
+        layout(std430, binding = 0) readonly buffer Now { Stored now[]; };
+        layout(std430, binding = 1) writeonly buffer Next { Stored next[]; };
+        int id;
+        vec3 toward(vec3 p, int l) { return now[id + pass.spring[l].offset].position.xyz - p; }
+        float share(int l) { return 1.0; })" +
+           read_text(folder + "node.inl") + R"(
+        void main() {
+            id = int(gl_GlobalInvocationID.x);
+            Node node = Node(now[id].position.xyz, now[id].velocity.xyz, now[id].position.w);
+            node = integrate(node, acceleration(node));
+            next[id] = Stored(vec4(node.position, node.inverse_mass), vec4(node.velocity, 0));
+        })";
+}
+
+std::string feedback_shader() {
+    return "#version 430 core\n" + physics() + R"(
+        layout(location = 0) in vec4 position;
+        layout(location = 1) in vec3 velocity;
+        layout(binding = 0) uniform samplerBuffer positions;
+        out vec3 next_position, next_velocity;
+        vec3 toward(vec3 p, int l) { return texelFetch(positions, gl_VertexID + pass.spring[l].offset).xyz - p; }
+        float share(int l) { return 1.0; })" +
+           read_text(folder + "node.inl") + R"(
+        void main() {
+            Node node = Node(position.xyz, velocity, position.w);
+            node = integrate(node, acceleration(node));
+            next_position = node.position;
+            next_velocity = node.velocity;
+        })";
+}
+
+std::optional<gl::Context> context() {
+    try {
+        return gl::Context();
+    } catch (const Error& error) {
+        return std::nullopt;
+    }
+}
+
+TEST(Shader, ThePhysicsCompilesAsCompute) {
+    const auto gl = context();
+    if (!gl) GTEST_SKIP() << "OpenGL is not available";
+    EXPECT_NO_THROW(gl::Program({{GL_COMPUTE_SHADER, "compute", compute_shader()}}));
+}
+
+TEST(Shader, ThePhysicsCompilesAsTransformFeedback) {
+    const auto gl = context();
+    if (!gl) GTEST_SKIP() << "OpenGL is not available";
+    EXPECT_NO_THROW(gl::Program({{GL_VERTEX_SHADER, "feedback", feedback_shader()}}));
+}
+
+TEST(Shader, AMistakeInItIsFound) {
+    const auto gl = context();
+    if (!gl) GTEST_SKIP() << "OpenGL is not available";
+    EXPECT_THROW(gl::Program({{GL_COMPUTE_SHADER, "broken", compute_shader() + "float half;"}}), Error);
+}
+
+}  // namespace
+}  // namespace palpate
