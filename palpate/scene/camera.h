@@ -7,8 +7,8 @@ struct Camera {
     vec3 eye = vec3(0.3f, 0.2f, 0.4f);  // m
     vec3 look_at = vec3(0);             // m
     vec3 up = vec3(0, 1, 0);
-    float angle = 35;                   // degrees from the bottom of the picture to the top
-    bool orthographic = false;          // then the picture is as high as `angle` shows at look_at
+    float angle = 35;           // degrees from the bottom of the picture to the top
+    bool orthographic = false;  // then the picture is as high as `angle` shows at look_at
 };
 
 struct Light {

@@ -1,0 +1,28 @@
+#include "palpate/scene/scene.h"
+
+#include "palpate/base/error.h"
+
+#include <cstdlib>
+
+namespace palpate {
+
+std::span<const Named<Units>> names(Units) {
+    static constexpr Named<Units> all[] = {{Units::metres, "m"},
+                                           {Units::centimetres, "cm"},
+                                           {Units::millimetres, "mm"},
+                                           {Units::micrometres, "um"}};
+    return all;
+}
+
+std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> places{folder};
+    if (const char* data = std::getenv("PALPATE_DATA")) places.push_back(data);
+    places.push_back("/usr/share/mricron/templates");
+    for (const auto& place : places)
+        if (std::error_code error; std::filesystem::is_regular_file(place / name, error)) return place / name;
+    throw Error("cannot find the file", name,
+                "set PALPATE_DATA to the folder that holds it; the brain and the head come with Debian's "
+                "mricron-data");
+}
+
+}  // namespace palpate

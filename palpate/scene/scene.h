@@ -1,0 +1,108 @@
+#pragma once
+#include "palpate/body/collider.h"
+#include "palpate/body/embedding.h"
+#include "palpate/body/material.h"
+#include "palpate/body/simulation.h"
+#include "palpate/mesh/mesh.h"
+#include "palpate/scene/camera.h"
+#include "palpate/scene/path.h"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace palpate {
+
+// A scene is recipes: what to read, what to make of it, what happens to it. Plain data; build() (build.h)
+// makes the bodies. docs/scene-format.md describes the file; each field below is a key of the same name, and
+// `line` says where in the file it came from, for messages.
+
+/// Nodes to hold fast; several ways may be given at once.
+struct Pin {
+    std::optional<float> below;  // the lowest part of the body's height along gravity: 0.15 is 15 %
+    std::vector<int> nodes;      // by number
+    std::optional<vec3> near;    // around a point, m ...
+    float radius = 0;            // ... within this, m; 0 takes the nearest node alone
+    std::vector<vec3> box;       // two opposite corners, m
+};
+
+struct BodyRecipe {
+    std::string name;
+    std::string volume;          // a file of voxels; or
+    std::string surface;         // a file of triangles; or
+    std::optional<ivec3> dims;   // a plain box of so many nodes along each axis
+    std::optional<float> iso;    // the value at the surface of a volume; half-integer for integer volumes
+    std::optional<Units> units;  // of the file; volumes default to millimetres, surfaces to metres
+    vec3 rotate = vec3(0);       // degrees about x, then y, then z
+    vec3 move = vec3(0);         // m, after turning
+    bool largest = true;         // keep only the largest connected part
+    std::optional<int> smooth;   // passes of smoothing; 10 for a volume, 0 for a surface
+    int faces = 0;               // simplify the surface to about this many; 0 leaves it
+    int nodes = 20'000;          // of the lattice; or
+    float spacing = 0;           // m
+    Material material;           // its fields are keys of the body itself
+    Pin pin;
+    Mapping mapping = Mapping::automatic;
+    vec3 colour = vec3(0.80f, 0.55f, 0.50f);  // linear red, green, blue from 0 to 1
+    float shine = 0.4f;                       // 0 dull, 1 wet
+    int line = 0;
+};
+
+/// A round tip that follows a path; it is there from the path's first time to its last.
+struct ToolRecipe {
+    std::string name;
+    std::string kind = "press";
+    std::string device = "script";
+    float radius = 0.01f;   // m
+    float stiffness = 400;  // N/m, see Press
+    Path path;              // s, m; a file of rows or the rows themselves
+    /// If given, the path starts where the tip, moved from this point ...
+    std::optional<vec3> from;
+    /// ... in this direction, first touches a surface; the path's positions are counted from there.
+    vec3 along = vec3(0, -1, 0);
+    vec3 colour = vec3(0.25f, 0.45f, 0.75f);
+    int line = 0;
+};
+
+struct Scene {
+    std::string name;              // of the file, without its ending
+    std::filesystem::path folder;  // that files are named from
+    Simulation simulation;         // colliders included; `frame` and `contact` are the program's own
+    double duration = 5;           // s, of a run that is not told otherwise
+    Camera camera;
+    std::variant<vec3, std::string> look_at = vec3(0);  // a point, or the name of a body
+    Light light;
+    std::vector<BodyRecipe> bodies;
+    std::vector<ToolRecipe> tools;
+};
+
+/// A change from outside the file: `body.brain.nodes=5000`.
+using Change = std::string;
+
+/// Reads a scene: the path of a TOML file, or the name of a shipped scene. Changes are made before it is
+/// checked. Throws Error with the file, the line and the nearest known key where something does not fit.
+Scene read_scene(const std::string& file_or_name, std::span<const Change> changes = {});
+
+/// The same from a text; `name` is used in messages, and files are looked for in `folder`.
+Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& folder,
+                  std::span<const Change> changes = {});
+
+/// A scene that comes with Palpate.
+struct ShippedScene {
+    std::string name;
+    std::string text;
+    std::string about;  // its first line of comment
+};
+const std::vector<ShippedScene>& shipped_scenes();
+
+/// Finds a file that a scene names: as it stands if absolute, else in the scene's folder, in the folder that
+/// the variable PALPATE_DATA names, or where Debian's mricron-data puts its templates. Throws Error.
+std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder);
+
+/// The names of mesh/mesh.h's units: m, cm, mm, um.
+std::span<const Named<Units>> names(Units);
+
+}  // namespace palpate
