@@ -1,0 +1,34 @@
+#include <CLI/CLI.hpp>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "palpate/palpate.h"
+
+namespace {
+
+using namespace palpate;
+
+template <class E>
+void print_names() {
+    for (const auto& n : names(E{})) fmt::print("{}\n", n.name);
+}
+
+void print_scenes() {
+    for (const ShippedScene& scene : shipped_scenes()) fmt::print("{:<8} {}\n", scene.name, scene.about);
+}
+
+}  // namespace
+
+void add_list(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("list", "List what there is");
+    command->require_subcommand(1);
+    auto add = [&](const char* name, const char* about, auto print) {
+        command->add_subcommand(name, about)->callback(print);
+    };
+    add("backends", "where a body's motion can be computed", print_names<Backend>);
+    add("integrators", "how it can be computed", print_names<Integrator>);
+    add("mappings", "how a surface can follow the nodes", print_names<Mapping>);
+    add("devices", "where a tool's motion can come from", [] { fmt::print("script\n"); });
+    add("scenes", "the scenes that come with Palpate", print_scenes);
+}

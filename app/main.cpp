@@ -1,0 +1,39 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "app/commands.h"
+
+namespace {
+
+constexpr int failed = 1, wrong_usage = 2;
+
+int complain(const char* what) {
+    std::fprintf(stderr, "palpate: error: %s\n", what);
+    return failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Deforms detailed surfaces in real time and lets people feel them.", "palpate");
+    app.require_subcommand(1);
+    add_run(app);
+    add_import(app);
+    add_info(app);
+    add_list(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        app.exit(error);
+        return wrong_usage;
+    } catch (const std::bad_alloc&) {
+        return complain("not enough memory in this machine; use fewer nodes or faces, or a smaller file");
+    } catch (const std::exception& error) {
+        return complain(error.what());
+    }
+    return 0;
+}

@@ -1,0 +1,104 @@
+#include "palpate/run/run.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/terminal.h"
+#include "palpate/base/error.h"
+
+namespace {
+
+using namespace palpate;
+
+struct Arguments {
+    std::string scene, backend, integrator, size = "1280x720";
+    std::vector<Change> changes;
+    bool force = false;
+    RunSettings settings;
+};
+
+// The size as "1280x720".
+void set_size(const std::string& text, RunSettings& settings) {
+    int used = 0;
+    const int read = std::sscanf(text.c_str(), "%dx%d%n", &settings.width, &settings.height, &used);
+    const bool fits = read == 2 && std::size_t(used) == text.size() && settings.width > 0 && settings.height > 0 &&
+                      settings.width <= 16384 && settings.height <= 16384;
+    if (!fits) throw CLI::ValidationError("--size", "write WIDTHxHEIGHT, such as 1280x720");
+}
+
+void print_summary(const Report& report) {
+    const double frames = std::max(report.frames, 1);
+    auto each = [&](double seconds) {
+        return fmt::format("{:6.2f} s   {:7.2f} ms a frame", seconds, 1000 * seconds / frames);
+    };
+    fmt::print("{}\n", report.scene);
+    for (const Report::Body& body : report.bodies)
+        print_table({{"body", body.name},
+                     {"nodes, springs", fmt::format("{}, {}", grouped((long long)body.nodes), grouped((long long)body.springs))},
+                     {"vertices, faces", fmt::format("{}, {}", grouped((long long)body.vertices), grouped((long long)body.faces))},
+                     {"spacing", fmt::format("{:.2f} mm", 1000 * body.spacing)},
+                     {"mass", fmt::format("{:.3g} kg free", body.mass)},
+                     {"steps", fmt::format("{} of {:.3g} ms", grouped(body.steps), 1000 * body.step)},
+                     {"largest speed", fmt::format("{:.3g} m/s", body.largest_speed)}});
+    for (const Report::Tool& tool : report.tools)
+        print_table({{"tool", tool.name},
+                     {"largest force", fmt::format("{:.3g} N", tool.largest_force)},
+                     {"deepest indentation", fmt::format("{:.1f} mm", 1000 * tool.deepest_indentation)}});
+    print_table({{"solver", report.backend + ", " + report.integrator},
+                 {"simulated", fmt::format("{:.2f} s in {} frames", report.simulated, report.frames)},
+                 {"build", fmt::format("{:6.2f} s", report.seconds.build)},
+                 {"simulate", each(report.seconds.simulate)},
+                 {"map", each(report.seconds.map)},
+                 {"render", fmt::format("{:6.2f} s   {:7.2f} ms a picture, {} pictures", report.seconds.render,
+                                        1000 * report.seconds.render / std::max(report.pictures, 1), report.pictures)},
+                 {"total", fmt::format("{:6.2f} s", report.seconds.total)}});
+    for (const std::string& note : report.notes) fmt::print("  note: {}\n", note);
+}
+
+void run_scene(Arguments& arguments) {
+    if (!arguments.backend.empty()) arguments.changes.push_back("simulation.backend=\"" + arguments.backend + "\"");
+    if (!arguments.integrator.empty())
+        arguments.changes.push_back("simulation.integrator=\"" + arguments.integrator + "\"");
+    set_size(arguments.size, arguments.settings);
+    Scene scene = read_scene(arguments.scene, arguments.changes);
+    scene.simulation.force = arguments.force;
+
+    const Report report = run(scene, arguments.settings, terminal_progress());
+    end_progress();
+    print_summary(report);
+    if (report.diverged)
+        throw Error(fmt::format("the motion blew up after {:.3f} s", report.simulated), arguments.scene,
+                    "use step = \"auto\"; what was good until then is kept");
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+    auto arguments = std::make_shared<Arguments>();
+    RunSettings& settings = arguments->settings;
+    CLI::App* command = app.add_subcommand("run", "Run a scene, off screen, and write what is asked for");
+    command->add_option("scene", arguments->scene, "a TOML file, or the name of a shipped scene")->required();
+    command->add_option("--backend", arguments->backend, "see: palpate list backends");
+    command->add_option("--integrator", arguments->integrator, "see: palpate list integrators");
+    auto* frames = command->add_option("--frames", settings.frames, "stop after so many frames of 1/60 s");
+    command->add_option("--steps", settings.steps, "stop after so many steps of the solver")->excludes(frames);
+    frames->check(CLI::Range(0, 100'000'000));
+    command->add_option("--size", arguments->size, "of the pictures, in pixels")->capture_default_str();
+    command->add_option("--video", settings.video, "write a film, MP4 (needs ffmpeg)");
+    command->add_option("--images", settings.images, "write PNG pictures into this folder");
+    command->add_option("--image-every", settings.image_every, "s between those pictures")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--report", settings.report, "write figures, JSON");
+    command->add_option("--plot", settings.plot, "write force and indentation over time, SVG");
+    command->add_option("--nodes", settings.nodes, "write the final nodes, CSV");
+    command->add_option("--surface", settings.surface, "write the final surface, PLY or OBJ");
+    command->add_flag("--lattice", settings.lattice, "draw the springs over the surface");
+    command->add_option("--set", arguments->changes, "change the scene, as in body.brain.nodes=5000")
+        ->allow_extra_args(false);
+    command->add_flag("--force", arguments->force, "accept a step above the stability bound");
+    command->callback([arguments] { run_scene(*arguments); });
+}

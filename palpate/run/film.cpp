@@ -1,0 +1,55 @@
+#include "palpate/run/film.h"
+
+#include "palpate/base/error.h"
+
+#include <fmt/format.h>
+
+namespace palpate {
+namespace {
+
+// H.264 halves the colour's resolution, which wants even sides: an odd last row or column is cropped.
+std::vector<std::string> command(const std::filesystem::path& path, int width, int height, int rate) {
+    if (!has_program("ffmpeg"))
+        throw Error("cannot write a film without the program ffmpeg", path.string(),
+                    "install ffmpeg, or ask for --images instead");
+    return {"ffmpeg",     "-v",
+            "error",      "-y",
+            "-f",         "rawvideo",
+            "-pix_fmt",   "rgba",
+            "-s",         fmt::format("{}x{}", width, height),
+            "-r",         std::to_string(rate),
+            "-i",         "-",
+            "-vf",        "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+            "-c:v",       "libx264",
+            "-preset",    "veryfast",
+            "-crf",       "20",
+            "-pix_fmt",   "yuv420p",
+            "-movflags",  "+faststart",
+            "-f",         "mp4",
+            path.string()};
+}
+
+}  // namespace
+
+Film::Film(const std::filesystem::path& path, int width, int height, int frames_per_second)
+    : path_(path),
+      unfinished_(path.string() + ".part"),
+      ffmpeg_(command(unfinished_, width, height, frames_per_second)) {}
+
+Film::~Film() {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished_, ignored);
+}
+
+void Film::add(const Image& image) { ffmpeg_.write(image.pixels.data(), image.pixels.size()); }
+
+void Film::finish() {
+    ffmpeg_.finish();
+    std::error_code error;
+    std::filesystem::rename(unfinished_, path_, error);
+    if (error)
+        throw Error("cannot write (" + error.message() + ")", path_.string(),
+                    "check that no folder has this name");
+}
+
+}  // namespace palpate

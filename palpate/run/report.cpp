@@ -1,0 +1,107 @@
+#include "palpate/run/report.h"
+
+#include "palpate/base/files.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The sum or the largest over a list of one of its members.
+template <class T, class V>
+V sum(const std::vector<T>& list, V T::*member) {
+    V total{};
+    for (const T& one : list) total += one.*member;
+    return total;
+}
+template <class T>
+double largest(const std::vector<T>& list, double T::*member) {
+    double most = 0;
+    for (const T& one : list) most = std::max(most, one.*member);
+    return most;
+}
+
+double shortest_step(const Report& report) {
+    double step = 0;
+    for (const Report::Body& body : report.bodies)
+        if (step == 0 || body.step < step) step = body.step;
+    return step;
+}
+
+Json to_json(const Report::Body& body) {
+    return {{"name", body.name},
+            {"nodes", body.nodes},
+            {"pinned", body.pinned},
+            {"springs", body.springs},
+            {"cells", body.cells},
+            {"vertices", body.vertices},
+            {"faces", body.faces},
+            {"spacing_m", body.spacing},
+            {"mass_kg", body.mass},
+            {"volume_m3", body.volume},
+            {"steps", body.steps},
+            {"step_s", body.step},
+            {"kinetic_energy_j", body.kinetic_energy},
+            {"elastic_energy_j", body.elastic_energy},
+            {"largest_speed_m_s", body.largest_speed}};
+}
+
+Json to_json(const Report::Tool& tool) {
+    return {{"name", tool.name},
+            {"largest_force_n", tool.largest_force},
+            {"deepest_indentation_m", tool.deepest_indentation},
+            {"time_s", tool.time},
+            {"force_n", tool.force},
+            {"indentation_m", tool.indentation}};
+}
+
+}  // namespace
+
+double Report::frames_per_second() const {
+    const double busy = seconds.simulate + seconds.map + seconds.render;
+    return busy > 0 ? frames / busy : 0;
+}
+
+void write_report(const Report& report, const std::filesystem::path& path) {
+    using Body = Report::Body;
+    using Tool = Report::Tool;
+    Json json = {{"scene", report.scene},
+                 {"backend", report.backend},
+                 {"integrator", report.integrator},
+                 {"threads", report.threads},
+                 {"renderer", report.renderer},
+                 {"nodes", sum(report.bodies, &Body::nodes)},
+                 {"springs", sum(report.bodies, &Body::springs)},
+                 {"vertices", sum(report.bodies, &Body::vertices)},
+                 {"faces", sum(report.bodies, &Body::faces)},
+                 {"frames", report.frames},
+                 {"pictures", report.pictures},
+                 {"steps", sum(report.bodies, &Body::steps)},
+                 {"step_s", shortest_step(report)},
+                 {"simulated_s", report.simulated},
+                 {"seconds",
+                  {{"build", report.seconds.build},
+                   {"simulate", report.seconds.simulate},
+                   {"map", report.seconds.map},
+                   {"render", report.seconds.render},
+                   {"total", report.seconds.total}}},
+                 {"frames_per_second", report.frames_per_second()},
+                 {"kinetic_energy_j", sum(report.bodies, &Body::kinetic_energy)},
+                 {"elastic_energy_j", sum(report.bodies, &Body::elastic_energy)},
+                 {"largest_speed_m_s", largest(report.bodies, &Body::largest_speed)},
+                 {"deepest_indentation_m", largest(report.tools, &Tool::deepest_indentation)},
+                 {"largest_force_n", largest(report.tools, &Tool::largest_force)},
+                 {"diverged", report.diverged},
+                 {"notes", report.notes},
+                 {"bodies", Json::array()},
+                 {"tools", Json::array()}};
+    for (const Body& body : report.bodies) json["bodies"].push_back(to_json(body));
+    for (const Tool& tool : report.tools) json["tools"].push_back(to_json(tool));
+    write_text(path, json.dump(2) + "\n");
+}
+
+}  // namespace palpate

@@ -1,0 +1,54 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What a run did: docs/report.md describes the file, whose keys are these names with their units behind
+/// them.
+struct Report {
+    struct Body {
+        std::string name;
+        std::size_t nodes = 0, pinned = 0, springs = 0, cells = 0, vertices = 0, faces = 0;
+        double spacing = 0;         // m
+        double mass = 0;            // kg, of the free nodes
+        double volume = 0;          // m³, enclosed by the surface at rest
+        long steps = 0;             // in all
+        double step = 0;            // s, the shortest taken
+        double kinetic_energy = 0;  // J, at the end
+        double elastic_energy = 0;  // J, at the end
+        double largest_speed = 0;   // m/s, at the end of any frame
+    };
+    struct Tool {
+        std::string name;
+        double largest_force = 0;  // N
+        double deepest_indentation =
+            0;  // m, of a surface under the tip, against where it was when the tip appeared
+        std::vector<double> time;         // s, the end of each frame
+        std::vector<double> force;        // N, mean over the frame
+        std::vector<double> indentation;  // m, at the end of the frame
+    };
+    struct Seconds {
+        double build = 0, simulate = 0, map = 0, render = 0, total = 0;
+    };
+
+    std::string scene, backend, integrator, renderer;
+    int threads = 1;
+    int frames = 0;         // of 1/60 s
+    int pictures = 0;       // drawn
+    double simulated = 0;   // s
+    Seconds seconds;        // s, of work
+    bool diverged = false;  // then the run ended at `simulated`
+    std::vector<Body> bodies;
+    std::vector<Tool> tools;
+    std::vector<std::string> notes;
+
+    /// Frames that the computer does in a second of simulating and mapping, and drawing where it drew.
+    double frames_per_second() const;
+};
+
+/// Writes a report as JSON. Throws Error if it cannot.
+void write_report(const Report& report, const std::filesystem::path& path);
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#pragma once
+#include "palpate/base/progress.h"
+#include "palpate/run/report.h"
+#include "palpate/scene/scene.h"
+
+#include <filesystem>
+#include <optional>
+
+namespace palpate {
+
+/// What a run shall last and leave behind. A path that is empty is not written; folders are made where they
+/// are missing.
+struct RunSettings {
+    // One of these, or the scene's own duration.
+    std::optional<int> frames;  // of 1/60 s
+    std::optional<long> steps;  // of the solver
+
+    std::filesystem::path video;    // MP4, 30 pictures a second
+    std::filesystem::path images;   // a folder of PNG pictures
+    std::filesystem::path report;   // JSON
+    std::filesystem::path plot;     // SVG: contact force and indentation over time
+    std::filesystem::path nodes;    // CSV of the final state: body,id,x,y,z,vx,vy,vz
+    std::filesystem::path surface;  // PLY or OBJ of the final surface; with several bodies NAME-BODY.ply
+
+    double image_every = 1;          // s
+    int width = 1280, height = 720;  // pixels
+    bool lattice = false;            // draw the springs over the surface
+};
+
+/// Runs a scene from its recipes to its files: build, then for each 1/60 s simulate, map, and draw if
+/// anything wants pictures. A run that diverges stops there: what was good is kept and written, and the
+/// report says so. Throws Error if the scene cannot be built or a file cannot be written.
+Report run(const Scene& scene, const RunSettings& settings, const Progress& progress = {});
+
+}  // namespace palpate

@@ -1,0 +1,41 @@
+#pragma once
+#include "palpate/body/press.h"
+#include "palpate/scene/scene.h"
+
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+/// A surface as it lies at the moment.
+struct Skin {
+    std::vector<vec3> positions, normals;
+};
+
+/// A tool's tip on its way along a scripted path.
+class Tip {
+ public:
+    explicit Tip(const ToolRecipe& recipe) : recipe_(recipe) {}
+
+    /// The press for the frame from `time` on, or none while the tip is away. At the path's first time the
+    /// tip is brought to the surface it shall touch, and the surfaces are remembered as untouched.
+    std::optional<Press> press(double time, double frame, const std::vector<Skin>& skins);
+
+    /// How far a surface under the tip is pushed in, m: the furthest that a vertex within 1.2 radii of the
+    /// tip's centre lies behind its untouched place, measured along the untouched normal.
+    double indentation(vec3 centre, const std::vector<Skin>& skins) const;
+
+    /// Where the tip's centre is at a time within its path, m.
+    vec3 centre(double time) const { return origin_ + position(recipe_.path, time); }
+
+ private:
+    const ToolRecipe& recipe_;
+    vec3 origin_ = vec3(0);  // of the path
+    std::vector<Skin> untouched_;
+};
+
+/// How far a ball can go from `from` along the unit vector `along` before it touches a vertex; nothing if it
+/// never does.
+std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std::vector<Skin>& skins);
+
+}  // namespace palpate

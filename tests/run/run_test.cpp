@@ -1,0 +1,176 @@
+#include "palpate/run/run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/base/pipe.h"
+#include "palpate/mesh/read.h"
+#include "palpate/run/plot.h"
+#include "palpate/run/tip.h"
+#include "tests/scratch.h"
+#include "tests/shapes.h"
+
+namespace palpate {
+namespace {
+
+// A soft block on a table, pressed in the middle from above.
+const std::string pressed = R"(
+[simulation]
+duration = 1.2
+[camera]
+eye = [0.15, 0.12, 0.2]
+look_at = "block"
+[[body]]
+name = "block"
+dims = [11, 6, 11]
+spacing = 0.01
+youngs_modulus = 8000
+density = 1000
+damping = 10
+pin = { below = 0 }
+[[tool]]
+name = "finger"
+radius = 0.012
+stiffness = 600
+from = [0.05, 0.3, 0.05]
+along = [0, -1, 0]
+path = [[0.4, 0, 0.002, 0], [0.8, 0, -0.01, 0], [1.1, 0, -0.01, 0]]
+)";
+
+Scene scene(const std::vector<Change>& changes = {}) { return parse_scene(pressed, "block.toml", ".", changes); }
+
+TEST(Run, PressesAndReports) {
+    const Report report = run(scene(), {});
+    EXPECT_FALSE(report.diverged);
+    EXPECT_EQ(report.frames, 72);
+    ASSERT_EQ(report.tools.size(), 1u);
+    const Report::Tool& finger = report.tools[0];
+    EXPECT_GT(finger.deepest_indentation, 0.005);
+    EXPECT_LT(finger.deepest_indentation, 0.0101);
+    // Between a flat stamp and a ball (Hertz) of this size and depth: the order of magnitude is physics, not chance.
+    EXPECT_GT(finger.largest_force, 0.3);
+    EXPECT_LT(finger.largest_force, 3);
+    for (std::size_t i = 0; i < finger.time.size(); ++i)
+        if (finger.time[i] < 0.4 || finger.time[i] > 1.15) EXPECT_EQ(finger.force[i], 0) << finger.time[i];
+    EXPECT_EQ(report.bodies[0].nodes, 11u * 6u * 11u);
+    EXPECT_GT(report.bodies[0].elastic_energy, 0);
+}
+
+TEST(Run, TheSameRunTwiceGivesTheSameBits) {
+    Scratch scratch;
+    RunSettings a, b;
+    a.frames = b.frames = 40;
+    a.nodes = scratch / "a.csv";
+    b.nodes = scratch / "b.csv";
+    run(scene(), a);
+    run(scene(), b);
+    EXPECT_EQ(read_text(a.nodes), read_text(b.nodes));
+}
+
+TEST(Run, StepsAndFramesAreCounted) {
+    RunSettings frames, steps;
+    frames.frames = 7;
+    EXPECT_EQ(run(scene(), frames).frames, 7);
+    steps.steps = 10;
+    EXPECT_EQ(run(scene({"simulation.step=0.001"}), steps).bodies[0].steps, 10);
+    frames.frames = 0;
+    EXPECT_EQ(run(scene(), frames).bodies[0].steps, 0);
+}
+
+TEST(Run, WritesWhatIsAskedFor) {
+    Scratch scratch;
+    RunSettings settings;
+    settings.frames = 70;
+    settings.width = 161;  // odd, which a film must survive
+    settings.height = 91;
+    settings.images = scratch / "stills";
+    settings.image_every = 0.5;
+    settings.report = scratch / "deep" / "report.json";
+    settings.plot = scratch / "plot.svg";
+    settings.nodes = scratch / "nodes.csv";
+    settings.surface = scratch / "surface.ply";
+    settings.lattice = true;
+    const bool film = has_program("ffmpeg");
+    if (film) settings.video = scratch / "film.mp4";
+    Report report;
+    try {
+        report = run(scene(), settings);
+    } catch (const Error& error) {
+        if (std::string(error.what()).find("OpenGL") == std::string::npos) throw;
+        GTEST_SKIP() << "not available: " << error.what();
+    }
+    const auto files = std::filesystem::directory_iterator(settings.images);
+    EXPECT_EQ(std::distance(files, {}), 3);
+    if (film) EXPECT_GT(std::filesystem::file_size(settings.video), 1000u);
+    const std::string json = read_text(settings.report);
+    for (const char* key : {"backend", "integrator", "threads", "nodes", "springs", "vertices", "faces", "steps", "step_s",
+                            "simulate", "map", "render", "frames_per_second", "kinetic_energy_j", "elastic_energy_j",
+                            "largest_speed_m_s", "deepest_indentation_m", "largest_force_n", "diverged"})
+        EXPECT_NE(json.find('"' + std::string(key) + '"'), std::string::npos) << key;
+    EXPECT_NE(read_text(settings.plot).find("polyline"), std::string::npos);
+    EXPECT_EQ(read_mesh(settings.surface, Units::metres).positions.size(), report.bodies[0].vertices);
+
+    // The CSV reads back to numbers, one line a node.
+    std::istringstream lines(read_text(settings.nodes));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "body,id,x,y,z,vx,vy,vz");
+    int count = 0;
+    while (std::getline(lines, line)) ++count;
+    EXPECT_EQ(count, 11 * 6 * 11);
+}
+
+TEST(Run, DivergenceIsReportedAndNotDrawn) {
+    Scene wild = scene({"simulation.step=0.0166", "body.block.damping=0"});
+    EXPECT_THROW(run(wild, {}), Error);  // refused without force
+    wild.simulation.force = true;
+    const Report report = run(wild, {});
+    EXPECT_TRUE(report.diverged);
+    EXPECT_LT(report.simulated, 1.2);
+    ASSERT_FALSE(report.notes.empty());
+    EXPECT_NE(report.notes.back().find("diverged"), std::string::npos);
+    EXPECT_LT(report.bodies[0].largest_speed, 100);
+}
+
+TEST(Run, AToolThatMeetsNothingIsNamed) {
+    try {
+        run(scene({"tool.finger.from=[1, 1, 1]"}), {});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("finger"), std::string::npos);
+    }
+}
+
+TEST(Run, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
+    RunSettings settings;
+    settings.report = "/proc/no/such/report.json";
+    EXPECT_THROW(run(scene(), settings), Error);
+}
+
+TEST(Tip, StopsWhereItTouches) {
+    const Mesh ball = ellipsoid(vec3(0.05f), 80);
+    const std::vector<Skin> skins{{ball.positions, ball.normals}};
+    const auto way = way_to_touch({0, 0, 1}, {0, 0, -1}, 0.01f, skins);
+    ASSERT_TRUE(way);
+    EXPECT_NEAR(*way, 1 - 0.06f, 1e-5f);
+    const auto aside = way_to_touch({0.03f, 0, 1}, {0, 0, -1}, 0.01f, skins);  // two balls of 0.05 and 0.01 touch
+    EXPECT_NEAR(*aside, 1 - std::sqrt(0.06f * 0.06f - 0.03f * 0.03f), 1e-4f);
+    EXPECT_FALSE(way_to_touch({0.07f, 0, 1}, {0, 0, -1}, 0.01f, skins));
+}
+
+TEST(Plot, SurvivesOddCurves) {
+    Scratch scratch;
+    write_plot("a < b & c", {{"x", "y", {{"none", {}, {}}, {"flat", {0, 1}, {0, 0}}, {"hole", {0, 1}, {1, NAN}}}}},
+               scratch / "p.svg");
+    const std::string svg = read_text(scratch / "p.svg");
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate
