@@ -1,0 +1,36 @@
+# Sourced by ./demo and ./check. need_packages NAME... installs those of Debian's packages that are missing, and says so.
+
+build_packages=(
+    g++ cmake ninja-build ccache pkg-config                                   # tools
+    libglm-dev libfmt-dev                                                     # vectors, text
+    libinsighttoolkit5-dev libopenvdb-dev libboost-iostreams-dev libtbb-dev   # volumes, solids
+    libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures
+    libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver
+    libtomlplusplus-dev libcli11-dev nlohmann-json3-dev                       # scenes, command line, reports
+    libgtest-dev                                                              # tests
+)
+data_packages=(mricron-data)  # the brain and the head
+film_packages=(ffmpeg)
+
+need_packages() {
+    local missing=() name
+    for name in "$@"; do
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+    done
+    [ ${#missing[@]} -eq 0 ] && return
+    echo "Installing with apt-get: ${missing[*]}"
+    local as_root=()
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || { echo "These need root and there is no sudo; install them and run this again." >&2; exit 1; }
+        as_root=(sudo)
+    fi
+    local log
+    log=$(mktemp)
+    if ! { "${as_root[@]}" apt-get update -q && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+            apt-get install -y -q --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+        tail -n 20 "$log" >&2
+        echo "The installation failed; the lines above say why (all of it: $log)." >&2
+        exit 1
+    fi
+    rm -f "$log"
+}
