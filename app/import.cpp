@@ -1,14 +1,14 @@
-#include <CLI/CLI.hpp>
-#include <memory>
-
-#include <fmt/format.h>
-
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "palpate/base/clock.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/write.h"
 #include "palpate/scene/build.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
 
 namespace {
 
@@ -39,7 +39,8 @@ void import_file(Arguments& arguments) {
     write_mesh(surface.mesh, arguments.out);
     end_progress();
     for (const std::string& step : surface.steps) fmt::print("  {}\n", step);
-    if (const std::string warning = size_warning(surface.mesh); !warning.empty()) fmt::print("  note: {}\n", warning);
+    if (const std::string warning = size_warning(surface.mesh); !warning.empty())
+        fmt::print("  note: {}\n", warning);
     fmt::print("wrote {} in {:.1f} s\n", arguments.out, now() - start);
 }
 
@@ -56,8 +57,10 @@ void add_import(CLI::App& app) {
     command->add_flag("--largest", recipe.largest, "keep only the largest connected part");
     command->add_option("--smooth", recipe.smooth, "passes of smoothing [10 for a volume, 0 for a mesh]")
         ->check(CLI::Range(0, 1000));
-    command->add_option("--faces", recipe.faces, "simplify to about so many faces")->check(CLI::NonNegativeNumber);
-    command->add_option("--units", arguments->units, "of the file: m, cm, mm, um [mm for a volume, m for a mesh]");
+    command->add_option("--faces", recipe.faces, "simplify to about so many faces")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--units", arguments->units,
+                        "of the file: m, cm, mm, um [mm for a volume, m for a mesh]");
     command->add_option("--rotate", arguments->rotate, "degrees about x, y, z")->expected(3);
     command->callback([arguments] { import_file(*arguments); });
 }

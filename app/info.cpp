@@ -1,13 +1,13 @@
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
-
-#include <fmt/format.h>
-
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "palpate/palpate.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
 
 namespace {
 
@@ -46,7 +46,9 @@ Json describe(const Scene& scene) {
     Json bodies = Json::array(), tools = Json::array();
     for (const BodyRecipe& body : scene.bodies)
         bodies.push_back({{"name", body.name},
-                          {"from", body.dims ? "dims" : body.volume.empty() ? body.surface : body.volume},
+                          {"from", body.dims             ? "dims"
+                                   : body.volume.empty() ? body.surface
+                                                         : body.volume},
                           {"mapping", name_of(body.mapping)}});
     for (const ToolRecipe& tool : scene.tools) tools.push_back({{"name", tool.name}, {"kind", tool.kind}});
     return {{"kind", "scene"},
@@ -96,8 +98,10 @@ void add_info(CLI::App& app) {
     };
     auto arguments = std::make_shared<Arguments>();
     CLI::App* command = app.add_subcommand("info", "Say what a mesh, a volume or a scene holds, in metres");
-    command->add_option("file", arguments->file, "a mesh, a volume, a scene, or a shipped scene's name")->required();
-    command->add_option("--units", arguments->units, "of the file: m, cm, mm, um [mm for a volume, m for a mesh]");
+    command->add_option("file", arguments->file, "a mesh, a volume, a scene, or a shipped scene's name")
+        ->required();
+    command->add_option("--units", arguments->units,
+                        "of the file: m, cm, mm, um [mm for a volume, m for a mesh]");
     command->add_flag("--json", arguments->json, "as JSON");
     command->callback([arguments] {
         const Json about = look_at(arguments->file, arguments->units);

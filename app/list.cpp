@@ -1,9 +1,8 @@
-#include <CLI/CLI.hpp>
-
-#include <fmt/format.h>
-
 #include "app/commands.h"
 #include "palpate/palpate.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace {
 

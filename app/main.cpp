@@ -1,9 +1,10 @@
+#include "app/commands.h"
+
 #include <CLI/CLI.hpp>
+
 #include <cstdio>
 #include <exception>
 #include <new>
-
-#include "app/commands.h"
 
 namespace {
 

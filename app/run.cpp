@@ -1,13 +1,13 @@
 #include "palpate/run/run.h"
 
-#include <CLI/CLI.hpp>
-#include <memory>
-
-#include <fmt/format.h>
-
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "palpate/base/error.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
 
 namespace {
 
@@ -24,8 +24,8 @@ struct Arguments {
 void set_size(const std::string& text, RunSettings& settings) {
     int used = 0;
     const int read = std::sscanf(text.c_str(), "%dx%d%n", &settings.width, &settings.height, &used);
-    const bool fits = read == 2 && std::size_t(used) == text.size() && settings.width > 0 && settings.height > 0 &&
-                      settings.width <= 16384 && settings.height <= 16384;
+    const bool fits = read == 2 && std::size_t(used) == text.size() && settings.width > 0 &&
+                      settings.height > 0 && settings.width <= 16384 && settings.height <= 16384;
     if (!fits) throw CLI::ValidationError("--size", "write WIDTHxHEIGHT, such as 1280x720");
 }
 
@@ -37,8 +37,10 @@ void print_summary(const Report& report) {
     fmt::print("{}\n", report.scene);
     for (const Report::Body& body : report.bodies)
         print_table({{"body", body.name},
-                     {"nodes, springs", fmt::format("{}, {}", grouped((long long)body.nodes), grouped((long long)body.springs))},
-                     {"vertices, faces", fmt::format("{}, {}", grouped((long long)body.vertices), grouped((long long)body.faces))},
+                     {"nodes, springs", fmt::format("{}, {}", grouped((long long)body.nodes),
+                                                    grouped((long long)body.springs))},
+                     {"vertices, faces", fmt::format("{}, {}", grouped((long long)body.vertices),
+                                                     grouped((long long)body.faces))},
                      {"spacing", fmt::format("{:.2f} mm", 1000 * body.spacing)},
                      {"mass", fmt::format("{:.3g} kg free", body.mass)},
                      {"steps", fmt::format("{} of {:.3g} ms", grouped(body.steps), 1000 * body.step)},
@@ -52,14 +54,16 @@ void print_summary(const Report& report) {
                  {"build", fmt::format("{:6.2f} s", report.seconds.build)},
                  {"simulate", each(report.seconds.simulate)},
                  {"map", each(report.seconds.map)},
-                 {"render", fmt::format("{:6.2f} s   {:7.2f} ms a picture, {} pictures", report.seconds.render,
-                                        1000 * report.seconds.render / std::max(report.pictures, 1), report.pictures)},
+                 {"render",
+                  fmt::format("{:6.2f} s   {:7.2f} ms a picture, {} pictures", report.seconds.render,
+                              1000 * report.seconds.render / std::max(report.pictures, 1), report.pictures)},
                  {"total", fmt::format("{:6.2f} s", report.seconds.total)}});
     for (const std::string& note : report.notes) fmt::print("  note: {}\n", note);
 }
 
 void run_scene(Arguments& arguments) {
-    if (!arguments.backend.empty()) arguments.changes.push_back("simulation.backend=\"" + arguments.backend + "\"");
+    if (!arguments.backend.empty())
+        arguments.changes.push_back("simulation.backend=\"" + arguments.backend + "\"");
     if (!arguments.integrator.empty())
         arguments.changes.push_back("simulation.integrator=\"" + arguments.integrator + "\"");
     set_size(arguments.size, arguments.settings);
@@ -84,7 +88,8 @@ void add_run(CLI::App& app) {
     command->add_option("--backend", arguments->backend, "see: palpate list backends");
     command->add_option("--integrator", arguments->integrator, "see: palpate list integrators");
     auto* frames = command->add_option("--frames", settings.frames, "stop after so many frames of 1/60 s");
-    command->add_option("--steps", settings.steps, "stop after so many steps of the solver")->excludes(frames);
+    command->add_option("--steps", settings.steps, "stop after so many steps of the solver")
+        ->excludes(frames);
     frames->check(CLI::Range(0, 100'000'000));
     command->add_option("--size", arguments->size, "of the pictures, in pixels")->capture_default_str();
     command->add_option("--video", settings.video, "write a film, MP4 (needs ffmpeg)");

@@ -1,13 +1,12 @@
 #include "app/terminal.h"
 
+#include "palpate/base/clock.h"
+
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-
-#include <fmt/format.h>
-
-#include "palpate/base/clock.h"
 
 palpate::Progress terminal_progress() {
     if (!isatty(STDERR_FILENO)) return {};

@@ -1,8 +1,8 @@
 #pragma once
+#include "palpate/base/progress.h"
+
 #include <string>
 #include <vector>
-
-#include "palpate/base/progress.h"
 
 /// Shows progress as one line that renews itself, on a terminal; says nothing in a pipe.
 palpate::Progress terminal_progress();

@@ -1,11 +1,12 @@
 #pragma once
-#include <vector>
-
 #include "palpate/body/body.h"
 
-/// The springs' forces on every node in double, straight from 2005's eq. 1 (without its factor 1/2): an implementation
-/// of its own, for tests to hold node.inl against.
-inline std::vector<palpate::dvec3> spring_forces(const palpate::Body& body, const std::vector<palpate::dvec3>& p) {
+#include <vector>
+
+/// The springs' forces on every node in double, straight from 2005's eq. 1 (without its factor 1/2): an
+/// implementation of its own, for tests to hold node.inl against.
+inline std::vector<palpate::dvec3> spring_forces(const palpate::Body& body,
+                                                 const std::vector<palpate::dvec3>& p) {
     using namespace palpate;
     const std::vector<int> ends = neighbours(body);
     const std::size_t links = body.springs.links.size();

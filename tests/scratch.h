@@ -7,7 +7,7 @@
 
 /// A folder for the files of one test, gone when the test ends.
 class Scratch {
-   public:
+ public:
     Scratch() {
         const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
         folder_ = std::filesystem::temp_directory_path() /
@@ -25,6 +25,6 @@ class Scratch {
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
 
-   private:
+ private:
     std::filesystem::path folder_;
 };

@@ -1,7 +1,7 @@
 #pragma once
-#include <cmath>
-
 #include "palpate/mesh/mesh.h"
+
+#include <cmath>
 
 // Closed surfaces whose shape is known, for tests.
 
@@ -15,8 +15,8 @@ inline palpate::Mesh ellipsoid(palpate::vec3 radii, int rings) {
     for (int r = 1; r < rings; ++r)
         for (int a = 0; a < around; ++a) {
             const float polar = pi * r / rings, turn = 2 * pi * a / around;
-            mesh.positions.push_back(
-                radii * vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)));
+            mesh.positions.push_back(radii * vec3(std::sin(polar) * std::cos(turn),
+                                                  std::sin(polar) * std::sin(turn), std::cos(polar)));
         }
     mesh.positions.push_back({0, 0, -radii.z});
     const unsigned last = unsigned(mesh.positions.size()) - 1;
@@ -33,8 +33,8 @@ inline palpate::Mesh ellipsoid(palpate::vec3 radii, int rings) {
     return mesh;
 }
 
-/// A box; its edges are cut into `parts`, so that it has vertices on its faces too. Vertices are not shared between
-/// faces, so normals are sharp.
+/// A box; its edges are cut into `parts`, so that it has vertices on its faces too. Vertices are not shared
+/// between faces, so normals are sharp.
 inline palpate::Mesh block(palpate::vec3 low, palpate::vec3 high, int parts = 4) {
     using namespace palpate;
     Mesh mesh;
@@ -56,7 +56,8 @@ inline palpate::Mesh block(palpate::vec3 low, palpate::vec3 high, int parts = 4)
             auto at = [&](int i, int j) { return first + unsigned(j * (parts + 1) + i); };
             for (int j = 0; j < parts; ++j)
                 for (int i = 0; i < parts; ++i) {
-                    uvec3 a(at(i, j), at(i + 1, j), at(i + 1, j + 1)), b(at(i, j), at(i + 1, j + 1), at(i, j + 1));
+                    uvec3 a(at(i, j), at(i + 1, j), at(i + 1, j + 1)),
+                        b(at(i, j), at(i + 1, j + 1), at(i, j + 1));
                     if (!side) std::swap(a.y, a.z), std::swap(b.y, b.z);
                     mesh.triangles.push_back(a);
                     mesh.triangles.push_back(b);

@@ -18,12 +18,20 @@ struct Cells {
     }
 };
 
-/// Chooses the cells that stand for a solid, given which fraction of each lies inside it. Those at least half
-/// inside are filled. Of the others, every cell that the solid touches is filled at first, and then taken
-/// away again, the emptiest first, where a half-full neighbour stands for its piece of the solid and the
-/// shape keeps its topology without it (a "simple" cell: the solid in its 26 neighbours stays in one part,
-/// and so does the empty space). So a sheet or a strand thinner than a cell stays whole, in one piece with
-/// the rest.
-Cells fill(ivec3 dims, const std::vector<float>& inside);
+/// What 4 × 4 × 4 points spread over a cell know of a solid: bit x + 4 y + 16 z of each word is the point's.
+struct Samples {
+    std::uint64_t inside = 0;  // the point is inside the solid
+    std::uint64_t near =
+        0;  // the solid's surface is so near that a part thinner than the points are apart may be here
+};
+
+/// Chooses the cells that stand for a solid, from the fullest to the emptiest: a cell is filled
+///   - if at least half of its points are inside the solid;
+///   - or if some point that the solid touches would else lie more than half a cell away from every filled
+///   neighbour;
+///   - or if without it parts would fall apart that hang together through its points.
+/// So the filled volume is the solid's, a sheet or a strand however thin stays whole, one cell thick and in
+/// one piece with the rest, and a gap a cell wide is not bridged.
+Cells fill(ivec3 dims, const std::vector<Samples>& samples);
 
 }  // namespace palpate

@@ -55,6 +55,9 @@ struct Basis {
     vec3 tangent, normal, across;
 };
 
+// An approximate normal made unit; shorter where the neighbours' unit vectors cancel and leave it to chance.
+vec3 clear_direction(vec3 normal) { return normal / std::max(glm::length(normal), 0.5f); }
+
 vec3 any_across(vec3 n) { return glm::cross(n, std::abs(n.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0)); }
 
 // 2005, eq. 6 and 8, with every vector normalised (the paper's N, B and Nc are not of unit length unless the
@@ -65,10 +68,10 @@ Basis basis(const OnTriangle& vertex, const Nodes& nodes) {
     const vec3 p = nodes.positions[a], q = nodes.positions[b], r = nodes.positions[c];
     vec3 normal = direction(glm::cross(q - p, r - p), vec3(0));
     if (vertex.curvature > 0) {
-        const vec3 approximate = direction(vertex.weights.x * direction(nodes.normals[a], vec3(0)) +
-                                               vertex.weights.y * direction(nodes.normals[b], vec3(0)) +
-                                               vertex.weights.z * direction(nodes.normals[c], vec3(0)),
-                                           normal);
+        vec3 sum(0);
+        for (int k = 0; k < 3; ++k)
+            sum += vertex.weights[k] * clear_direction(nodes.normals[vertex.nodes[k]]);
+        const vec3 approximate = glm::length(sum) > 0.05f ? glm::normalize(sum) : normal;
         normal = glm::mix(normal, approximate, vertex.curvature);
     }
     normal = direction(normal, vec3(0, 0, 1));

@@ -126,37 +126,44 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, co
     return body;
 }
 
-// A box of cells around a mesh, with at least half an empty cell on every side.
+// A box of cells around a mesh, with an empty cell on every side. Its grid starts at the mesh's lowest
+// corner, so that a box of whole cells is filled exactly.
 struct Frame {
     vec3 origin;
     ivec3 dims;
 };
 
 Frame frame_around(const Bounds& box, float spacing) {
-    const dvec3 cells = glm::ceil(dvec3(box.size()) / double(spacing)) + 1.0;
+    const dvec3 cells = glm::ceil(dvec3(box.size()) / double(spacing) - 1e-3) + 2.0;
     if (!(cells.x * cells.y * cells.z <= most_cells))
         throw Error(
             fmt::format("a spacing of {} m would need {:.3g} cells", spacing, cells.x * cells.y * cells.z),
             "the lattice", "use a larger spacing, or fewer nodes");
-    const ivec3 dims(cells);
-    return {box.centre() - 0.5f * spacing * vec3(dims), dims};
+    return {box.low - spacing, ivec3(cells)};
 }
 
-// The fraction of each cell inside the mesh, from samples³ points in it.
-std::vector<float> inside_fractions(const SignedDistance& distance, const Frame& frame, float spacing) {
+std::vector<Samples> sample_cells(const SignedDistance& distance, const Frame& frame, float spacing) {
     const float fine = spacing / samples;
-    std::vector<float> part(std::size_t(frame.dims.x) * frame.dims.y * frame.dims.z, 0);
+    // Half the way to the next point across, and half a voxel by which interpolation may overlook a thin
+    // sheet.
+    const float near = (0.87f + 0.5f) * fine;
+    std::vector<Samples> cells(std::size_t(frame.dims.x) * frame.dims.y * frame.dims.z);
     const ivec3 slab(frame.dims.x * samples, frame.dims.y * samples, samples);
-    for (int z = 0; z < frame.dims.z; ++z) {
-        const vec3 first = frame.origin + vec3(0.5f * fine) + vec3(0, 0, float(z) * spacing);
+    for (int layer = 0; layer < frame.dims.z; ++layer) {
+        const vec3 first = frame.origin + vec3(0.5f * fine) + vec3(0, 0, float(layer) * spacing);
         const std::vector<float> d = distance.sample(first, fine, slab);
-        for (std::size_t i = 0; i < d.size(); ++i) {
-            const std::size_t x = i % slab.x / samples, y = i / slab.x % slab.y / samples;
-            if (d[i] < 0) part[(std::size_t(z) * frame.dims.y + y) * frame.dims.x + x] += 1;
-        }
+        std::size_t point = 0;
+        for_each_place(slab, [&](ivec3 p) {
+            const ivec3 c = p / samples, within = p % samples;
+            Samples& cell = cells[(std::size_t(layer) * frame.dims.y + c.y) * frame.dims.x + c.x];
+            const std::uint64_t bit = std::uint64_t(1)
+                                      << (within.x + samples * (within.y + samples * within.z));
+            if (d[point] < 0) cell.inside |= bit;
+            if (std::abs(d[point]) < near) cell.near |= bit;
+            ++point;
+        });
     }
-    for (float& p : part) p /= samples * samples * samples;
-    return part;
+    return cells;
 }
 
 }  // namespace
@@ -173,7 +180,7 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
     const SignedDistance distance(mesh, spacing / samples);
     auto fill_at = [&](float h) {
         const Frame frame = frame_around(box, h);
-        return std::pair(frame, fill(frame.dims, inside_fractions(distance, frame, h)));
+        return std::pair(frame, fill(frame.dims, sample_cells(distance, frame, h)));
     };
     auto assemble_at = [&](float h) {
         const auto [frame, cells] = fill_at(h);

@@ -75,17 +75,19 @@ Model build_one(const BodyRecipe& recipe, const Scene& scene, std::vector<std::s
 
 }  // namespace
 
-CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder, const Progress& progress) {
+CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
+                          const Progress& progress) {
     CleanSurface surface;
     Mesh& mesh = surface.mesh;
     auto did = [&](const std::string& what) { surface.steps.push_back(what); };
     tell(progress, recipe, "reading", 0);
     if (!recipe.volume.empty()) {
-        const Volume volume = read_volume(find_data(recipe.volume, folder), recipe.units.value_or(Units::millimetres));
+        const Volume volume =
+            read_volume(find_data(recipe.volume, folder), recipe.units.value_or(Units::millimetres));
         tell(progress, recipe, "finding the surface", 0.1);
         mesh = isosurface(volume, *recipe.iso);
-        did(fmt::format("surface at {} of {} x {} x {} voxels: {} faces", *recipe.iso, volume.dims.x, volume.dims.y,
-                        volume.dims.z, mesh.triangles.size()));
+        did(fmt::format("surface at {} of {} x {} x {} voxels: {} faces", *recipe.iso, volume.dims.x,
+                        volume.dims.y, volume.dims.z, mesh.triangles.size()));
     } else {
         mesh = read_mesh(find_data(recipe.surface, folder), recipe.units.value_or(Units::metres));
         did(fmt::format("read {} vertices, {} faces", mesh.positions.size(), mesh.triangles.size()));
@@ -98,7 +100,8 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
         smooth(mesh, passes);
         did(fmt::format("smoothed {} times", passes));
     }
-    if (recipe.faces > 0) did(fmt::format("simplified away {} faces", decimate(mesh, std::size_t(recipe.faces))));
+    if (recipe.faces > 0)
+        did(fmt::format("simplified away {} faces", decimate(mesh, std::size_t(recipe.faces))));
     rotate(mesh, recipe.rotate);
     for (vec3& p : mesh.positions) p += recipe.move;
     compute_normals(mesh);

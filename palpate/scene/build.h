@@ -31,8 +31,10 @@ struct CleanSurface {
     std::vector<std::string> steps;
 };
 
-/// The surface of one recipe: read, cleaned, placed. Not for a plain box, whose surface comes from its lattice.
-CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder, const Progress& progress = {});
+/// The surface of one recipe: read, cleaned, placed. Not for a plain box, whose surface comes from its
+/// lattice.
+CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
+                          const Progress& progress = {});
 
 /// What looks wrong with a surface's size, or nothing: over 10 m or under 1 mm the unit is probably not what
 /// was said.

@@ -333,8 +333,8 @@ void check(const BodyRecipe& body, const Source& source) {
             "a negative number where none makes sense", "use a positive one");
     require(body.nodes > 0 && body.nodes <= 10'000'000, "nodes is not from 1 to 10 million",
             "choose a number there");
-    require(body.faces >= 0 && body.smooth.value_or(0) >= 0 && body.smooth.value_or(0) <= 1000, "faces or smooth is out of range",
-            "use 0 or more, and at most 1000 passes");
+    require(body.faces >= 0 && body.smooth.value_or(0) >= 0 && body.smooth.value_or(0) <= 1000,
+            "faces or smooth is out of range", "use 0 or more, and at most 1000 passes");
     if (body.dims) {
         const ivec3 d = *body.dims;
         require(std::min({d.x, d.y, d.z}) >= 1 && double(d.x) * d.y * d.z <= 1e7,

@@ -13,9 +13,9 @@ namespace palpate {
 /// What one call of Solver::step did.
 struct Stats {
     int steps = 0;
-    double step = 0;        // s, the length of each
-    double largest_speed = 0;      // m/s, of any node at the end
-    bool diverged = false;  // the motion blew up; the state is that from before the call
+    double step = 0;           // s, the length of each
+    double largest_speed = 0;  // m/s, of any node at the end
+    bool diverged = false;     // the motion blew up; the state is that from before the call
     std::vector<dvec3>
         reactions;  // N s, one a press: the impulse that the body gave to the tip, and its opposite got
 };

@@ -1,11 +1,11 @@
 #include "palpate/base/files.h"
 
+#include "palpate/base/error.h"
+#include "tests/scratch.h"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
-
-#include "palpate/base/error.h"
-#include "tests/scratch.h"
 
 namespace palpate {
 namespace {
@@ -34,7 +34,8 @@ TEST(Files, AFailureLeavesTheOldFileAndNothingElse) {
 }
 
 TEST(Files, AFullDiskIsAnErrorWithNothingLeft) {
-    // /dev/full takes opening and buffering but no byte. Reached through a link with the temporary file's name.
+    // /dev/full takes opening and buffering but no byte. Reached through a link with the temporary file's
+    // name.
     Scratch scratch;
     const auto file = scratch / "file";
     std::filesystem::create_symlink("/dev/full", file.string() + ".part" + std::to_string(getpid()));

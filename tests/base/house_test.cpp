@@ -1,4 +1,7 @@
-// The house keeps its floors: a folder includes only what stands below it (docs/architecture.md has the table).
+// The house keeps its floors: a folder includes only what stands below it (docs/architecture.md has the
+// table).
+#include "palpate/base/files.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -6,8 +9,6 @@
 #include <regex>
 #include <set>
 #include <sstream>
-
-#include "palpate/base/files.h"
 
 namespace palpate {
 namespace {
@@ -45,7 +46,8 @@ TEST(House, EachFloorIncludesOnlyWhatStandsBelow) {
         const std::string floor = *below.begin();
         ASSERT_TRUE(may_include.contains(floor)) << floor << " is not in the table";
         for (const std::string& folder : included_by(entry.path()))
-            EXPECT_TRUE(folder == floor || may_include.at(floor).contains(folder)) << below << " includes " << folder;
+            EXPECT_TRUE(folder == floor || may_include.at(floor).contains(folder))
+                << below << " includes " << folder;
         ++files;
     }
     EXPECT_GT(files, 40);
@@ -54,11 +56,15 @@ TEST(House, EachFloorIncludesOnlyWhatStandsBelow) {
 TEST(House, TheWholeLibraryIsInItsOneHeader) {
     const std::string all = read_text(house / "palpate.h");
     // Parts inside the house that a user does not reach for.
-    const std::set<std::string> inner = {"base/pipe.h", "body/cells.h", "body/grid.h", "mesh/corners.h", "mesh/ending.h"};
+    const std::set<std::string> inner = {"base/pipe.h", "body/cells.h", "body/grid.h", "mesh/corners.h",
+                                         "mesh/ending.h"};
     for (const auto& entry : std::filesystem::recursive_directory_iterator(house)) {
         const std::string below = std::filesystem::relative(entry.path(), house).string();
-        const bool part_of_drawing = below.starts_with("gl/") || below.starts_with("render/") || below.starts_with("run/");
-        if (entry.path().extension() != ".h" || inner.contains(below) || part_of_drawing || below == "palpate.h") continue;
+        const bool part_of_drawing =
+            below.starts_with("gl/") || below.starts_with("render/") || below.starts_with("run/");
+        if (entry.path().extension() != ".h" || inner.contains(below) || part_of_drawing ||
+            below == "palpate.h")
+            continue;
         EXPECT_NE(all.find("palpate/" + below), std::string::npos) << below;
     }
 }

@@ -1,10 +1,10 @@
 #include "palpate/base/pipe.h"
 
-#include <gtest/gtest.h>
-
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "tests/scratch.h"
+
+#include <gtest/gtest.h>
 
 namespace palpate {
 namespace {

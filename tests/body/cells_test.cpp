@@ -1,11 +1,12 @@
 #include "palpate/body/cells.h"
 
+#include "palpate/body/grid.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <random>
-
-#include "palpate/body/grid.h"
 
 namespace palpate {
 namespace {
@@ -34,69 +35,98 @@ int parts(const Cells& cells, bool filled, bool by_faces) {
     return count;
 }
 
-Cells touched(ivec3 dims, const std::vector<float>& inside) {
-    Cells cells{dims, {}};
-    for (float part : inside) cells.filled.push_back(part > 0);
-    return cells;
-}
+// A cell whose lowest `layers` of four, along z, are inside.
+Samples layers(int count) { return {count == 4 ? ~0ull : (1ull << 16 * count) - 1, 0}; }
+
+struct Sampled {
+    ivec3 dims;
+    std::vector<Samples> samples;
+    explicit Sampled(ivec3 size) : dims(size), samples(std::size_t(size.x * size.y * size.z)) {}
+    Samples& operator[](ivec3 c) { return samples[std::size_t((c.z * dims.y + c.y) * dims.x + c.x)]; }
+};
 
 TEST(Cells, HalfFullCellsAreFilledAndEmptyOnesAreNot) {
-    std::mt19937 random(3);
-    std::uniform_real_distribution<float> any(0, 1);
-    const ivec3 dims(9, 7, 11);
-    std::vector<float> inside(9 * 7 * 11);
-    for (float& part : inside) part = any(random) < 0.5f ? 0 : any(random);
-    const Cells cells = fill(dims, inside);
-    for (std::size_t i = 0; i < inside.size(); ++i) {
-        if (inside[i] >= 0.5f) EXPECT_TRUE(cells.filled[i]);
-        if (inside[i] == 0) EXPECT_FALSE(cells.filled[i]);
+    std::mt19937_64 random(3);
+    Sampled solid({9, 7, 11});
+    for (Samples& s : solid.samples)
+        if (random() % 2) s = {random() & random(), random()};
+    const Cells cells = fill(solid.dims, solid.samples);
+    for (std::size_t i = 0; i < solid.samples.size(); ++i) {
+        if (std::popcount(solid.samples[i].inside) >= 32) EXPECT_TRUE(cells.filled[i]);
+        if (!solid.samples[i].inside && !solid.samples[i].near) EXPECT_FALSE(cells.filled[i]);
     }
 }
 
 TEST(Cells, ThicknessIsRoundedToTheNearestCell) {
-    // A slab that covers a fraction of its outermost layers: they go where the fraction is below a half.
-    for (float part : {0.1f, 0.4f, 0.6f, 0.9f}) {
-        const ivec3 dims(8, 8, 6);
-        std::vector<float> inside(8 * 8 * 6, 0);
-        for_each_place(dims, [&](ivec3 c) {
-            const bool rim = c.x == 0 || c.y == 0 || c.x == 7 || c.y == 7;
-            if (rim || c.z == 0 || c.z == 5) return;
-            inside[std::size_t((c.z * 8 + c.y) * 8 + c.x)] = c.z == 4 ? part : 1;
+    for (int part : {0, 1, 2, 3, 4}) {
+        Sampled slab({8, 8, 6});
+        for_each_place({8, 8, 5}, [&](ivec3 c) {
+            if (c.x > 0 && c.y > 0 && c.x < 7 && c.y < 7 && c.z > 0) slab[c] = layers(c.z == 4 ? part : 4);
         });
-        const Cells cells = fill(dims, inside);
-        EXPECT_EQ(cells.at({3, 3, 4}), part >= 0.5f) << part;
+        const Cells cells = fill(slab.dims, slab.samples);
+        EXPECT_EQ(cells.at({3, 3, 4}), part >= 2) << part;
         EXPECT_TRUE(cells.at({3, 3, 3}));
+        EXPECT_FALSE(cells.at({3, 3, 5}));
     }
 }
 
 TEST(Cells, AThinSheetStaysWholeAndAttached) {
-    // A block with a sheet that fills a third of each of its cells.
-    const ivec3 dims(16, 9, 9);
-    std::vector<float> inside(16 * 9 * 9, 0);
-    for_each_place(dims, [&](ivec3 c) {
-        float& part = inside[std::size_t((c.z * 9 + c.y) * 16 + c.x)];
-        if (c.x > 0 && c.x < 6 && std::min(c.y, c.z) > 0 && std::max(c.y, c.z) < 8) part = 1;
-        if (c.x >= 6 && c.x < 15 && c.y > 0 && c.y < 8 && c.z == 4) part = 0.33f;
-    });
-    const Cells cells = fill(dims, inside);
-    EXPECT_EQ(parts(cells, true, false), 1);
-    for (int x = 7; x < 15; ++x)
-        for (int y = 1; y < 8; ++y) EXPECT_TRUE(cells.at({x, y, 4})) << x << ' ' << y;
+    // A block, and a sheet one layer of points thick, or thinner: only near. Its neighbours above are near as
+    // well, a little, and go.
+    for (bool thinner : {false, true}) {
+        Sampled solid({16, 9, 9});
+        for_each_place(solid.dims, [&](ivec3 c) {
+            if (c.x > 0 && c.x < 6 && std::min(c.y, c.z) > 0 && std::max(c.y, c.z) < 8) solid[c] = layers(4);
+            if (c.x < 6 || c.x > 14 || c.y < 1 || c.y > 7) return;
+            if (c.z == 4) solid[c] = thinner ? Samples{0, layers(3).inside} : layers(1);
+            if (c.z == 3) solid[c].near = 0xffffull << 48;
+        });
+        const Cells cells = fill(solid.dims, solid.samples);
+        EXPECT_EQ(parts(cells, true, false), 1);
+        for (int x = 7; x < 15; ++x)
+            for (int y = 1; y < 8; ++y) {
+                EXPECT_TRUE(cells.at({x, y, 4})) << x << ' ' << y;
+                EXPECT_FALSE(cells.at({x, y, 3})) << x << ' ' << y;
+            }
+    }
 }
 
-TEST(Cells, TakingCellsAwayKeepsTheTopology) {
-    std::mt19937 random(5);
-    std::uniform_real_distribution<float> any(0, 1);
-    for (int round = 0; round < 20; ++round) {
-        const ivec3 dims(8, 9, 7);  // with an empty rim, so that there is one outside
-        std::vector<float> inside(8 * 9 * 7, 0);
-        for_each_place(dims, [&](ivec3 c) {
-            const bool rim = glm::any(glm::equal(c, ivec3(0))) || glm::any(glm::equal(c, dims - 1));
-            if (!rim && any(random) < 0.4f) inside[std::size_t((c.z * 9 + c.y) * 8 + c.x)] = any(random);
+TEST(Cells, AGapOneCellWideIsNotBridged) {
+    // Two blocks; the cells between them hold a layer of points of the one, or of each.
+    for (std::uint64_t rim : {0xfffull, 0xfffull | 0xfffull << 48}) {
+        Sampled solid({8, 8, 9});
+        for_each_place(solid.dims, [&](ivec3 c) {
+            if (std::min({c.x, c.y, c.z}) == 0 || std::max({c.x, c.y}) == 7 || c.z == 8) return;
+            solid[c] = c.z == 4 ? Samples{rim, 0} : layers(4);
         });
-        const Cells before = touched(dims, inside), after = fill(dims, inside);
-        EXPECT_EQ(parts(after, true, false), parts(before, true, false));
-        EXPECT_EQ(parts(after, false, true), parts(before, false, true));
+        const Cells cells = fill(solid.dims, solid.samples);
+        EXPECT_EQ(parts(cells, true, false), 2);
+        EXPECT_EQ(std::count(cells.filled.begin(), cells.filled.end(), 1), 2 * 6 * 6 * 3);
+    }
+}
+
+// Tubes that wind at random, one point thick: the cells that are left hang together as the points do, and no
+// point is far from them.
+TEST(Cells, WhatHangsTogetherStaysTogether) {
+    std::mt19937 random(5);
+    for (int round = 0; round < 20; ++round) {
+        const int size = 40;
+        Sampled solid(ivec3(size / 4));
+        std::vector<ivec3> points;
+        ivec3 at(size / 2);
+        for (int i = 0; i < 400; ++i) {
+            solid[at / 4].inside |= 1ull << (at.x % 4 + 4 * (at.y % 4) + 16 * (at.z % 4));
+            points.push_back(at);
+            const int axis = int(random() % 3);
+            at[axis] = std::clamp(at[axis] + (random() % 2 ? 1 : -1), 4, size - 5);
+        }
+        const Cells cells = fill(solid.dims, solid.samples);
+        EXPECT_EQ(parts(cells, true, false), 1);
+        for (ivec3 p : points) {
+            bool close = false;
+            for_each_place(ivec3(5), [&](ivec3 d) { close |= cells.at((p + d - 2) / 4); });
+            EXPECT_TRUE(close);
+        }
     }
 }
 

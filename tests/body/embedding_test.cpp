@@ -1,14 +1,14 @@
 #include "palpate/body/embedding.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
-#include <random>
-
 #include "palpate/base/error.h"
 #include "palpate/body/lattice.h"
 #include "tests/shapes.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
 
 namespace palpate {
 namespace {
@@ -43,7 +43,8 @@ TEST(Embedding, TheRestSurfaceMapsToItself) {
         const Body body = lattice(mesh, {.spacing = spacing, .material = tissue});
         for (Mapping mode : modes) {
             const Moved moved = follow(embed(mesh, body, mode), body, body.positions);
-            EXPECT_LE(farthest(moved.positions, mesh.positions), 1e-6 * 0.12) << name_of(mode) << ' ' << spacing;
+            EXPECT_LE(farthest(moved.positions, mesh.positions), 1e-6 * 0.12)
+                << name_of(mode) << ' ' << spacing;
             EXPECT_LE(farthest(moved.normals, mesh.normals), 1e-5) << name_of(mode) << ' ' << spacing;
         }
     }
@@ -84,8 +85,8 @@ TEST(Embedding, AnyAffineMotionIsExactInCells) {
     EXPECT_LE(farthest(moved.normals, normals), 2e-5);
 }
 
-// A twist of 90° over the body's length, in closed form: within the figures that a computation beforehand gave
-// (root-mean-square in spacings: trilinear 0.016, constant 0.05, interpolated 0.08).
+// A twist of 90° over the body's length, in closed form: within the figures that a computation beforehand
+// gave (root-mean-square in spacings: trilinear 0.016, constant 0.05, interpolated 0.08).
 TEST(Embedding, ATwistIsFollowedAsWellAsEachModeCan) {
     const Mesh mesh = organ();
     const float h = 0.006f;
@@ -128,7 +129,8 @@ TEST(Embedding, CollapsedNodesGiveNoNaN) {
         }
 }
 
-// Two slabs with a gap of about a cell, at many positions in the grid: moving one must not move the other's surface.
+// Two slabs with a gap of about a cell, at many positions in the grid: moving one must not move the other's
+// surface.
 TEST(Embedding, NoVertexHangsAcrossAGap) {
     const float h = 0.01f;
     for (float gap : {1.05f, 1.4f, 2.0f})

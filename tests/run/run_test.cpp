@@ -1,11 +1,5 @@
 #include "palpate/run/run.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
-#include <sstream>
-
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/base/pipe.h"
@@ -14,6 +8,12 @@
 #include "palpate/run/tip.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
 
 namespace palpate {
 namespace {
@@ -42,7 +42,9 @@ along = [0, -1, 0]
 path = [[0.4, 0, 0.002, 0], [0.8, 0, -0.01, 0], [1.1, 0, -0.01, 0]]
 )";
 
-Scene scene(const std::vector<Change>& changes = {}) { return parse_scene(pressed, "block.toml", ".", changes); }
+Scene scene(const std::vector<Change>& changes = {}) {
+    return parse_scene(pressed, "block.toml", ".", changes);
+}
 
 TEST(Run, PressesAndReports) {
     const Report report = run(scene(), {});
@@ -52,7 +54,8 @@ TEST(Run, PressesAndReports) {
     const Report::Tool& finger = report.tools[0];
     EXPECT_GT(finger.deepest_indentation, 0.005);
     EXPECT_LT(finger.deepest_indentation, 0.0101);
-    // Between a flat stamp and a ball (Hertz) of this size and depth: the order of magnitude is physics, not chance.
+    // Between a flat stamp and a ball (Hertz) of this size and depth: the order of magnitude is physics, not
+    // chance.
     EXPECT_GT(finger.largest_force, 0.3);
     EXPECT_LT(finger.largest_force, 3);
     for (std::size_t i = 0; i < finger.time.size(); ++i)
@@ -108,9 +111,10 @@ TEST(Run, WritesWhatIsAskedFor) {
     EXPECT_EQ(std::distance(files, {}), 3);
     if (film) EXPECT_GT(std::filesystem::file_size(settings.video), 1000u);
     const std::string json = read_text(settings.report);
-    for (const char* key : {"backend", "integrator", "threads", "nodes", "springs", "vertices", "faces", "steps", "step_s",
-                            "simulate", "map", "render", "frames_per_second", "kinetic_energy_j", "elastic_energy_j",
-                            "largest_speed_m_s", "deepest_indentation_m", "largest_force_n", "diverged"})
+    for (const char* key :
+         {"backend", "integrator", "threads", "nodes", "springs", "vertices", "faces", "steps", "step_s",
+          "simulate", "map", "render", "frames_per_second", "kinetic_energy_j", "elastic_energy_j",
+          "largest_speed_m_s", "deepest_indentation_m", "largest_force_n", "diverged"})
         EXPECT_NE(json.find('"' + std::string(key) + '"'), std::string::npos) << key;
     EXPECT_NE(read_text(settings.plot).find("polyline"), std::string::npos);
     EXPECT_EQ(read_mesh(settings.surface, Units::metres).positions.size(), report.bodies[0].vertices);
@@ -158,14 +162,16 @@ TEST(Tip, StopsWhereItTouches) {
     const auto way = way_to_touch({0, 0, 1}, {0, 0, -1}, 0.01f, skins);
     ASSERT_TRUE(way);
     EXPECT_NEAR(*way, 1 - 0.06f, 1e-5f);
-    const auto aside = way_to_touch({0.03f, 0, 1}, {0, 0, -1}, 0.01f, skins);  // two balls of 0.05 and 0.01 touch
+    const auto aside =
+        way_to_touch({0.03f, 0, 1}, {0, 0, -1}, 0.01f, skins);  // two balls of 0.05 and 0.01 touch
     EXPECT_NEAR(*aside, 1 - std::sqrt(0.06f * 0.06f - 0.03f * 0.03f), 1e-4f);
     EXPECT_FALSE(way_to_touch({0.07f, 0, 1}, {0, 0, -1}, 0.01f, skins));
 }
 
 TEST(Plot, SurvivesOddCurves) {
     Scratch scratch;
-    write_plot("a < b & c", {{"x", "y", {{"none", {}, {}}, {"flat", {0, 1}, {0, 0}}, {"hole", {0, 1}, {1, NAN}}}}},
+    write_plot("a < b & c",
+               {{"x", "y", {{"none", {}, {}}, {"flat", {0, 1}, {0, 0}}, {"hole", {0, 1}, {1, NAN}}}}},
                scratch / "p.svg");
     const std::string svg = read_text(scratch / "p.svg");
     EXPECT_EQ(svg.find("nan"), std::string::npos);

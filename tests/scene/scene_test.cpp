@@ -1,13 +1,13 @@
 #include "palpate/scene/scene.h"
 
-#include <gtest/gtest.h>
-
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/scene/build.h"
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 #include "tests/scratch.h"
+
+#include <gtest/gtest.h>
 
 namespace palpate {
 namespace {
@@ -36,7 +36,8 @@ std::string refusal(const std::string& text, const std::vector<Change>& changes 
 }
 
 void expect_words(const std::string& message, std::initializer_list<std::string> words) {
-    for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
+    for (const std::string& word : words)
+        EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
 }
 
@@ -139,14 +140,16 @@ TEST(Scene, ChangesFromTheCommandLine) {
 }
 
 TEST(Scene, MissingFilesSayWhereTheyAreLookedFor) {
-    expect_words([] {
-        try {
-            read_scene("no-such-scene");
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    }(), {"no-such-scene", "brain", "box"});
+    expect_words(
+        [] {
+            try {
+                read_scene("no-such-scene");
+            } catch (const Error& error) {
+                return std::string(error.what());
+            }
+            return std::string();
+        }(),
+        {"no-such-scene", "brain", "box"});
     EXPECT_THROW(find_data("no-such-file.nii", "."), Error);
 }
 
@@ -158,20 +161,21 @@ TEST(Path, FromAFile) {
     EXPECT_EQ(position(path, 1), vec3(0.5f, 0, -0.05f));
     EXPECT_TRUE(within(path, 2));
     EXPECT_FALSE(within(path, 2.01));
-    for (const char* bad : {"", "t,x,y,z\n", "0,0,0\n", "0,0,0,nan\n", "0,0,0,0\n0,0,0,0\n", "0,0,0,0x\n", "0,0,0,0\nt,x,y,z"}) {
+    for (const char* bad : {"", "t,x,y,z\n", "0,0,0\n", "0,0,0,nan\n", "0,0,0,0\n0,0,0,0\n", "0,0,0,0x\n",
+                            "0,0,0,0\nt,x,y,z"}) {
         write_text(scratch / "bad.csv", bad);
         EXPECT_THROW(read_path(scratch / "bad.csv"), Error) << bad;
     }
 }
 
 class Shipped : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Every, Shipped, ::testing::Values("brain", "head", "box"), [](const auto& info) {
-    return info.param;
-});
+INSTANTIATE_TEST_SUITE_P(Every, Shipped, ::testing::Values("brain", "head", "box"),
+                         [](const auto& each) { return each.param; });
 
 TEST_P(Shipped, BuildsAsItSays) {
     const Scene scene = read_scene(GetParam());
-    if (!scene.bodies[0].volume.empty() && !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
+    if (!scene.bodies[0].volume.empty() &&
+        !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
         GTEST_SKIP() << "mricron-data is not available";
     const Models made = build(scene);
     for (std::size_t m = 0; m < made.models.size(); ++m) {
@@ -190,9 +194,11 @@ TEST_P(Shipped, BuildsAsItSays) {
 // 10,000 steps of the automatic length: nothing blows up, and what should come to rest does.
 TEST_P(Shipped, IsStableAtTheAutomaticStep) {
     const Scene scene = read_scene(GetParam());
-    if (!scene.bodies[0].volume.empty() && !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
+    if (!scene.bodies[0].volume.empty() &&
+        !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
         GTEST_SKIP() << "mricron-data is not available";
-    std::vector<Change> smaller;  // fewer nodes, so that a test is not a benchmark; the spacing changes only the scale
+    std::vector<Change>
+        smaller;  // fewer nodes, so that a test is not a benchmark; the spacing changes only the scale
     if (!scene.bodies[0].dims) smaller = {"body." + scene.bodies[0].name + ".nodes=3000"};
     const Scene quick = read_scene(GetParam(), smaller);
     const Models made = build(quick);

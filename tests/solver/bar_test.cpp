@@ -1,12 +1,13 @@
-// A bar of the 18-link lattice, stretched by 0.1 % between its ends and left to come to rest, shows its modulus.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+// A bar of the 18-link lattice, stretched by 0.1 % between its ends and left to come to rest, shows its
+// modulus.
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
 #include "palpate/solver/solver.h"
 #include "tests/forces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace palpate {
 namespace {

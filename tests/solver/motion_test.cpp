@@ -1,8 +1,4 @@
 // The reference solver against closed form, for every integrator.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "palpate/base/error.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
@@ -12,6 +8,10 @@
 #include "tests/forces.h"
 #include "tests/shapes.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+
 namespace palpate {
 namespace {
 
@@ -19,7 +19,7 @@ const Material tissue{.youngs_modulus = 5000, .density = 1000, .damping = 3};
 const Material undamped{.youngs_modulus = 5000, .density = 1000};
 
 class Motion : public ::testing::TestWithParam<Integrator> {
-   protected:
+ protected:
     Simulation simulation(double step = 0) const {
         Simulation s;
         s.integrator = GetParam();
@@ -33,9 +33,10 @@ class Motion : public ::testing::TestWithParam<Integrator> {
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Every, Motion, ::testing::Values(Integrator::semi_implicit_euler, Integrator::verlet),
-                         [](const auto& info) {
-                             return info.param == Integrator::verlet ? "verlet" : "semi_implicit_euler";
+INSTANTIATE_TEST_SUITE_P(Every, Motion,
+                         ::testing::Values(Integrator::semi_implicit_euler, Integrator::verlet),
+                         [](const auto& each) {
+                             return each.param == Integrator::verlet ? "verlet" : "semi_implicit_euler";
                          });
 
 dvec3 momentum(const Body& body, const State& state) {
@@ -63,7 +64,8 @@ TEST_P(Motion, OneSpringHasItsPeriod) {
         for (int i = 1; i <= 200; ++i) {
             solver->step(1.0 / 64);
             const double t = i / 64.0;
-            const double expected = stretch * std::exp(-c * t / 2) * (std::cos(w * t) + c / (2 * w) * std::sin(w * t));
+            const double expected =
+                stretch * std::exp(-c * t / 2) * (std::cos(w * t) + c / (2 * w) * std::sin(w * t));
             const State s = solver->state();
             const double x = glm::distance(s.positions[0], s.positions[1]) - 0.1;
             if (const double e = std::abs(x - expected); !(e <= worst)) worst = e;
@@ -142,11 +144,12 @@ TEST_P(Motion, RestStaysAtRest) {
     const State s = solver->state();
     double moved = 0, fastest = 0;
     for (std::size_t i = 0; i < body.count(); ++i) {
-        if (const double d = glm::distance(s.positions[i], dvec3(body.positions[i])); !(d <= moved)) moved = d;
+        if (const double d = glm::distance(s.positions[i], dvec3(body.positions[i])); !(d <= moved))
+            moved = d;
         fastest = std::max(fastest, glm::length(s.velocities[i]));
     }
     EXPECT_LE(moved, 1e-6 * 0.12);
-    EXPECT_LE(fastest, 1e-5);
+    EXPECT_LE(fastest, 10 * 0.06 * 1.2e-7 / step);  // ten roundings of a position a step
 }
 
 TEST_P(Motion, APinnedNodeNeverMoves) {
@@ -180,7 +183,8 @@ TEST_P(Motion, PlaneAndSphereHoldTheBody) {
 }
 
 TEST_P(Motion, OnAPlaneAtRestTheGroundCarriesTheWeight) {
-    // Frictionless, so only the height is held: the lowest layer stays on the plane and nothing moves any more.
+    // Frictionless, so only the height is held: the lowest layer stays on the plane and nothing moves any
+    // more.
     const Body body = lattice({4, 4, 4}, 0.01f, {.youngs_modulus = 20000, .density = 1000, .damping = 20});
     Simulation s = simulation();
     s.colliders = {Plane{{0, 1, 0}, 0}};
@@ -206,7 +210,8 @@ TEST_P(Motion, TheReactionOfAPressIsTheMomentumItGives) {
         dvec3 given(0), lost(0);
         for (int i = 0; i < 30; ++i) {
             const float t = float(i) / 60;
-            const Press press{{0.025f + 0.02f * t, 0.065f - 0.03f * t, 0.03f}, {0.02f, -0.03f, 0}, 0.012f, 300};
+            const Press press{
+                {0.025f + 0.02f * t, 0.065f - 0.03f * t, 0.03f}, {0.02f, -0.03f, 0}, 0.012f, 300};
             const Stats stats = solver->step(1.0 / 60, {&press, 1});
             given -= stats.reactions[0];
         }
@@ -219,11 +224,14 @@ TEST_P(Motion, TheReactionOfAPressIsTheMomentumItGives) {
 }
 
 TEST_P(Motion, ATipPressesAsHardAsItsStiffnessSays) {
-    // A tip much wider than the lattice lies flat on all of it: stiffness / (π r²) for each metre and square metre.
+    // A tip much wider than the lattice lies flat on all of it: stiffness / (π r²) for each metre and square
+    // metre.
     Body body = lattice({9, 3, 9}, 0.01f, {.youngs_modulus = 1e5f, .density = 1000, .damping = 50});
-    pin(body, nodes_in(body, {vec3(-1), vec3(1, 0.0101f, 1)}));  // two layers held, so that the top gives little
+    pin(body,
+        nodes_in(body, {vec3(-1), vec3(1, 0.0101f, 1)}));  // two layers held, so that the top gives little
     const float radius = 5, depth = 1e-4f;
-    const float k = 200 * 3.14159265f * radius * radius / 0.01f;  // 200 N/m on each square centimetre and one node
+    const float k =
+        200 * 3.14159265f * radius * radius / 0.01f;  // 200 N/m on each square centimetre and one node
     const Press press{{0.04f, 0.02f + radius - depth, 0.04f}, vec3(0), radius, k};
     EXPECT_NEAR(contact_stiffness(press, 0.01f), 2.0f, 1e-4f);
     auto solver = make_solver(body, weightless());
@@ -233,7 +241,8 @@ TEST_P(Motion, ATipPressesAsHardAsItsStiffnessSays) {
         expected += 2.0 * std::max(0.0, double(radius) - glm::distance(dvec3(p), dvec3(press.centre)));
     EXPECT_GT(expected, 0);
     // (Floats hold a radius of 5 m to half a micrometre; the depth is 100.)
-    const double duration = GetParam() == Integrator::verlet ? 0.5e-5 : 1e-5;  // Verlet's first kick is half a step
+    const double duration =
+        GetParam() == Integrator::verlet ? 0.5e-5 : 1e-5;  // Verlet's first kick is half a step
     EXPECT_LE(std::abs(stats.reactions[0].y / duration / expected - 1), 0.02);
 }
 
@@ -250,20 +259,23 @@ TEST_P(Motion, TheSameRunTwiceGivesTheSameBits) {
     EXPECT_EQ(a.velocities, b.velocities);
 }
 
-TEST_P(Motion, EnergyIsKeptWithoutDamping) {
+// Both schemes are symplectic: the energy swings within a step's accuracy but does not drift.
+TEST_P(Motion, EnergyDoesNotDriftWithoutDamping) {
     Body body = lattice({4, 4, 4}, 0.01f, undamped);
     for (vec3& p : body.positions) p *= 1.02f;
     auto solver = make_reference<double>(body, weightless(), highest_frequency(body));
-    const double start = energy(body, solver->state()).elastic;
-    double least = 1e9, most = 0;
-    for (int i = 0; i < 600; ++i) {
-        solver->step(1.0 / 60);
-        const Energy e = energy(body, solver->state());
-        least = std::min(least, e.kinetic + e.elastic);
-        most = std::max(most, e.kinetic + e.elastic);
-    }
-    EXPECT_LE(most / start, GetParam() == Integrator::verlet ? 1.15 : 1.6);
-    EXPECT_GE(least / start, GetParam() == Integrator::verlet ? 0.85 : 0.6);
+    auto mean_energy = [&](int frames) {
+        double sum = 0;
+        for (int i = 0; i < frames; ++i) {
+            solver->step(1.0 / 60);
+            const Energy e = energy(body, solver->state());
+            sum += e.kinetic + e.elastic;
+        }
+        return sum / frames;
+    };
+    const double early = mean_energy(300);
+    for (int i = 0; i < 3000; ++i) solver->step(1.0 / 60);
+    EXPECT_LE(std::abs(mean_energy(300) / early - 1), 0.03);
 }
 
 TEST_P(Motion, OddSizesRun) {
@@ -281,7 +293,8 @@ TEST_P(Motion, OddSizesRun) {
     }
 }
 
-// ---- stability ------------------------------------------------------------------------------------------------------
+// ---- stability
+// ------------------------------------------------------------------------------------------------------
 
 TEST(Stability, HighestFrequencyInClosedForm) {
     const Body two = pair(50, 0.2f, 0, 0);
@@ -363,7 +376,8 @@ TEST(Stability, TooManyCollidersAreRefused) {
     EXPECT_THROW(make_solver(body, s), Error);
 }
 
-// A change of the frame's length in the middle does not disturb Verlet: its kicks know how far velocities lag.
+// A change of the frame's length in the middle does not disturb Verlet: its kicks know how far velocities
+// lag.
 TEST(Verlet, KeepsItsOrderWhenTheStepChanges) {
     const Body body = pair(50, 0.2f, 1, 0.001f);
     auto error = [&](int n) {

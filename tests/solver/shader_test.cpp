@@ -1,12 +1,12 @@
 // node.inl and pass.inl are also GLSL: compute and transform-feedback shaders around the same text compile.
-#include <gtest/gtest.h>
-
-#include <optional>
-
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/gl/context.h"
 #include "palpate/gl/program.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
 
 namespace palpate {
 namespace {
