@@ -21,8 +21,7 @@ struct Cells {
 /// What 4 × 4 × 4 points spread over a cell know of a solid: bit x + 4 y + 16 z of each word is the point's.
 struct Samples {
     std::uint64_t inside = 0;  // the point is inside the solid
-    std::uint64_t near =
-        0;  // the solid's surface is so near that a part thinner than the points are apart may be here
+    std::uint64_t near = 0;    // the solid's surface passes the point's own part of the cell
 };
 
 /// Chooses the cells that stand for a solid, from the fullest to the emptiest: a cell is filled

@@ -142,28 +142,53 @@ Frame frame_around(const Bounds& box, float spacing) {
     return {box.low - spacing, ivec3(cells)};
 }
 
-std::vector<Samples> sample_cells(const SignedDistance& distance, const Frame& frame, float spacing) {
-    const float fine = spacing / samples;
-    // Half the way to the next point across, and half a voxel by which interpolation may overlook a thin
-    // sheet.
-    const float near = (0.87f + 0.5f) * fine;
-    std::vector<Samples> cells(std::size_t(frame.dims.x) * frame.dims.y * frame.dims.z);
-    const ivec3 slab(frame.dims.x * samples, frame.dims.y * samples, samples);
-    for (int layer = 0; layer < frame.dims.z; ++layer) {
-        const vec3 first = frame.origin + vec3(0.5f * fine) + vec3(0, 0, float(layer) * spacing);
-        const std::vector<float> d = distance.sample(first, fine, slab);
-        std::size_t point = 0;
+// Cells with their samples, found by place.
+struct Sampled {
+    Frame frame;
+    float fine;  // m, between points
+    std::vector<Samples> cells;
+
+    Sampled(const Frame& box, float spacing)
+        : frame(box), fine(spacing / samples), cells(std::size_t(box.dims.x) * box.dims.y * box.dims.z) {}
+
+    // The word and the bit of a point, by its place among all points.
+    Samples& cell_of(ivec3 p) {
+        const ivec3 c = p / samples;
+        return cells[(std::size_t(c.z) * frame.dims.y + c.y) * frame.dims.x + c.x];
+    }
+    static std::uint64_t bit_of(ivec3 p) {
+        const ivec3 within = p % samples;
+        return std::uint64_t(1) << (within.x + samples * (within.y + samples * within.z));
+    }
+};
+
+void mark_inside(const SignedDistance& distance, Sampled& sampled) {
+    const ivec3 dims = sampled.frame.dims * samples, slab(dims.x, dims.y, samples);
+    for (int z = 0; z < dims.z; z += samples) {
+        const vec3 first = sampled.frame.origin + sampled.fine * (vec3(0.5f) + vec3(0, 0, float(z)));
+        const std::vector<float> d = distance.sample(first, sampled.fine, slab);
+        std::size_t i = 0;
         for_each_place(slab, [&](ivec3 p) {
-            const ivec3 c = p / samples, within = p % samples;
-            Samples& cell = cells[(std::size_t(layer) * frame.dims.y + c.y) * frame.dims.x + c.x];
-            const std::uint64_t bit = std::uint64_t(1)
-                                      << (within.x + samples * (within.y + samples * within.z));
-            if (d[point] < 0) cell.inside |= bit;
-            if (std::abs(d[point]) < near) cell.near |= bit;
-            ++point;
+            p.z += z;
+            if (d[i++] < 0) sampled.cell_of(p).inside |= Sampled::bit_of(p);
         });
     }
-    return cells;
+}
+
+// Marks the points in whose part of their cell the surface lies, by scattering points over each triangle,
+// closer together than the parts are wide.
+void mark_surface(const Mesh& mesh, Sampled& sampled) {
+    for (uvec3 t : mesh.triangles) {
+        const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+        const int parts = 1 + int(2 * longest / sampled.fine);
+        for (int i = 0; i <= parts; ++i)
+            for (int j = 0; i + j <= parts; ++j) {
+                const vec3 point = a + (float(i) * (b - a) + float(j) * (c - a)) / float(parts);
+                const ivec3 p((point - sampled.frame.origin) / sampled.fine);
+                sampled.cell_of(p).near |= Sampled::bit_of(p);
+            }
+    }
 }
 
 }  // namespace
@@ -179,8 +204,10 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
     frame_around(box, spacing);  // refuses what would be too large before anything is built
     const SignedDistance distance(mesh, spacing / samples);
     auto fill_at = [&](float h) {
-        const Frame frame = frame_around(box, h);
-        return std::pair(frame, fill(frame.dims, sample_cells(distance, frame, h)));
+        Sampled sampled(frame_around(box, h), h);
+        mark_inside(distance, sampled);
+        mark_surface(mesh, sampled);
+        return std::pair(sampled.frame, fill(sampled.frame.dims, sampled.cells));
     };
     auto assemble_at = [&](float h) {
         const auto [frame, cells] = fill_at(h);

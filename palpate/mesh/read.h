@@ -1,21 +1,26 @@
 #pragma once
-#include <filesystem>
-
-#include "palpate/base/progress.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/volume.h"
 
+#include <filesystem>
+
 namespace palpate {
 
-/// Reads a surface (PLY, OBJ) whose coordinates are in `units`. Faces with more than three corners are cut into
-/// triangles; vertices are not welded (see repair.h). Normals are kept where the file has them.
-/// Throws Error if the file is missing, truncated, empty, has coordinates that are not finite, or has faces that
-/// name vertices which do not exist.
+/// Reads a surface (PLY in all three of its forms, OBJ) whose coordinates are in `units`. All groups of the
+/// file become one mesh. Faces with more than three corners are cut into fans of triangles; vertices are not
+/// welded (see repair.h). Normals are kept where the file has just one for every vertex. Throws Error if the
+/// file is missing, truncated, has no faces, has coordinates that are not finite, or has faces that name
+/// vertices which do not exist.
 Mesh read_mesh(const std::filesystem::path& path, Units units);
 
-/// Reads a scalar volume (NIfTI: .nii, .nii.gz) whose spacing is in `units`; NIfTI means millimetres.
-/// Throws Error if the file is missing, truncated, claims more voxels than it can hold, has values that are not
-/// finite, or is not three-dimensional. Never allocates more than the file's own size can account for.
+/// True if a name ends like a volume's: .nii or .nii.gz.
+bool is_volume(const std::filesystem::path& path);
+
+/// Reads a scalar volume (NIfTI-1: .nii, .nii.gz) of any kind of number. Its spacing and origin are in
+/// `units`; NIfTI means millimetres, and a file that says that it is in metres or micrometres is brought to
+/// millimetres first. Throws Error if the file is missing, truncated, damaged, claims more voxels than it
+/// holds or than 2^30, has values that are not finite, axes that are not at right angles, or is not
+/// three-dimensional. Allocates only for voxels that are really there.
 Volume read_volume(const std::filesystem::path& path, Units units = Units::millimetres);
 
 }  // namespace palpate

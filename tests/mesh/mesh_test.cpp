@@ -1,0 +1,100 @@
+#include "tests/mesh/shapes.h"
+#include <palpate/mesh/mesh.h>
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+TEST(Mesh, UnitsAreMetres) {
+    EXPECT_EQ(metres(Units::metres), 1.0f);
+    EXPECT_EQ(metres(Units::centimetres), 0.01f);
+    EXPECT_EQ(metres(Units::millimetres), 0.001f);
+    EXPECT_EQ(metres(Units::micrometres), 1e-6f);
+}
+
+TEST(Mesh, BoundsHoldAllVertices) {
+    EXPECT_TRUE(bounds(Mesh{}).empty());
+    const Bounds b = bounds(box({-1, 2, 3}, {4, 5, 7}));
+    EXPECT_EQ(b.low, vec3(-1, 2, 3));
+    EXPECT_EQ(b.high, vec3(4, 5, 7));
+}
+
+TEST(Mesh, VolumeOfABox) {
+    EXPECT_EQ(volume(Mesh{}), 0);
+    EXPECT_LE(std::abs(volume(box({-1, 2, 3}, {1, 5, 7})) - 24), 1e-12);
+    EXPECT_LE(std::abs(volume(inside_out(box({-1, 2, 3}, {1, 5, 7}))) + 24), 1e-12);
+}
+
+TEST(Mesh, VolumeFarFromTheOriginLosesNothing) {
+    // 1 cm at 64 m: terms measured from the origin would be 10^11 times the result.
+    const double edge = double(64.0f + 1 / 128.0f) - 64;
+    EXPECT_LE(std::abs(volume(box(vec3(64), vec3(64 + 1 / 128.0f))) / (edge * edge * edge) - 1), 1e-12);
+}
+
+TEST(Mesh, VolumeOfASphere) {
+    const double ball = 4.0 / 3 * M_PI * 0.001;
+    EXPECT_LE(std::abs(volume(sphere({1, 2, 3}, 0.1f, 6)) / ball - 1), 1e-3);
+}
+
+TEST(Mesh, NormalsOfASphere) {
+    const vec3 centre(0.3f, -0.1f, 0.2f);
+    Mesh mesh = sphere(centre, 0.1f, 5);
+    compute_normals(mesh);
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    float worst = 0;
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+        EXPECT_LE(std::abs(glm::length(mesh.normals[i]) - 1), 1e-6f);
+        worst = std::max(worst, glm::distance(mesh.normals[i], glm::normalize(mesh.positions[i] - centre)));
+    }
+    EXPECT_LE(worst, 0.006f);
+}
+
+TEST(Mesh, NormalsOfABoxDoNotDependOnItsDiagonals) {
+    // Each corner has one to two faces a side, but always a right angle a side: so the weights are equal.
+    Mesh mesh = box(vec3(-1), vec3(1));
+    compute_normals(mesh);
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+        EXPECT_LE(glm::distance(mesh.normals[i], mesh.positions[i] / std::sqrt(3.0f)), 1e-6f);
+}
+
+TEST(Mesh, NormalsDoNotDependOnSize) {
+    for (float size : {1e-12f, 1e-6f, 1e6f, 1e12f}) {
+        Mesh mesh = box(vec3(-size), vec3(size));
+        compute_normals(mesh);
+        for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+            EXPECT_LE(glm::distance(mesh.normals[i], mesh.positions[i] / (size * std::sqrt(3.0f))), 1e-6f)
+                << size;
+    }
+}
+
+TEST(Mesh, NormalsWhereThereIsNoFacePointUp) {
+    Mesh mesh{{vec3(0), vec3(1, 0, 0), vec3(2, 0, 0), vec3(5)}, {}, {{0, 1, 2}, {0, 0, 0}}};
+    compute_normals(mesh);
+    for (vec3 n : mesh.normals) EXPECT_EQ(n, vec3(0, 0, 1));
+}
+
+TEST(Mesh, RotateTurnsAboutXThenYThenZ) {
+    Mesh mesh;
+    mesh.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.normals = mesh.positions;
+    Mesh up = mesh;
+    rotate(up, {-90, 0, 0});
+    EXPECT_LE(glm::distance(up.positions[2], vec3(0, 1, 0)), 1e-7f) << "z up becomes y up";
+    EXPECT_LE(glm::distance(up.positions[1], vec3(0, 0, -1)), 1e-7f);
+    EXPECT_LE(glm::distance(up.normals[2], vec3(0, 1, 0)), 1e-7f);
+
+    rotate(mesh, {90, 90, 90});  // y: to z by x, to x by y, to y by z
+    EXPECT_LE(glm::distance(mesh.positions[1], vec3(0, 1, 0)), 1e-7f);
+    EXPECT_LE(glm::distance(mesh.positions[0], vec3(0, 0, -1)), 1e-7f);
+}
+
+TEST(Mesh, RotateKeepsShape) {
+    Mesh mesh = sphere(vec3(0.1f), 0.1f, 3);
+    const double before = volume(mesh);
+    rotate(mesh, {12, -34, 56});
+    EXPECT_LE(std::abs(volume(mesh) / before - 1), 1e-6);
+}
+
+}  // namespace
+}  // namespace palpate
