@@ -274,6 +274,7 @@ Volume read_volume(const std::filesystem::path& path, Units units) {
         check_voxels(stream, header, path);
         const Quiet quiet;
         Volume volume = read_with_itk(path, header);
+        volume.name = path.string();
         for (std::size_t i = 0; i < volume.values.size(); ++i)
             if (!std::isfinite(volume.values[i])) refuse(fmt::format("voxel {} is not finite", i), path);
         volume.spacing *= metres(units);

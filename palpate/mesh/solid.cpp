@@ -74,7 +74,7 @@ Mesh isosurface(const Volume& volume, float iso) {
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
     if (!(*low < iso && iso < *high))
         throw Error(fmt::format("no surface at the value {} (its voxels hold {} to {})", iso, *low, *high),
-                    "the volume", "choose an iso value between these");
+                    volume.name, "choose an iso value between these");
 
     openvdb::initialize();
     std::vector<openvdb::Vec3s> points;

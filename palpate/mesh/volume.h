@@ -2,6 +2,7 @@
 #include "palpate/base/vectors.h"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace palpate {
@@ -9,6 +10,7 @@ namespace palpate {
 /// A scalar grid, as from CT or MRI. Plain data. Voxel (i, j, k) lies at origin + direction · (spacing · (i,
 /// j, k)).
 struct Volume {
+    std::string name = "the volume";  // for messages: the file it came from
     ivec3 dims = ivec3(0);
     vec3 spacing = vec3(1);  // m
     vec3 origin = vec3(0);   // m, the centre of voxel (0, 0, 0); ITK's axes: x left, y posterior, z superior

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+#include <sstream>
+
 namespace palpate {
 namespace {
 
@@ -12,21 +15,17 @@ std::vector<std::string> command(const std::filesystem::path& path, int width, i
     if (!has_program("ffmpeg"))
         throw Error("cannot write a film without the program ffmpeg", path.string(),
                     "install ffmpeg, or ask for --images instead");
-    return {"ffmpeg",     "-v",
-            "error",      "-y",
-            "-f",         "rawvideo",
-            "-pix_fmt",   "rgba",
-            "-s",         fmt::format("{}x{}", width, height),
-            "-r",         std::to_string(rate),
-            "-i",         "-",
-            "-vf",        "crop=trunc(iw/2)*2:trunc(ih/2)*2",
-            "-c:v",       "libx264",
-            "-preset",    "veryfast",
-            "-crf",       "20",
-            "-pix_fmt",   "yuv420p",
-            "-movflags",  "+faststart",
-            "-f",         "mp4",
-            path.string()};
+    // -xerror: without it, ffmpeg ends in peace after a disk was full.
+    std::istringstream text(
+        fmt::format("ffmpeg -v error -xerror -y "
+                    "-f rawvideo -pix_fmt rgba -s {}x{} -r {} -i - "
+                    "-vf crop=trunc(iw/2)*2:trunc(ih/2)*2 "
+                    "-c:v libx264 -preset veryfast -crf 20 -pix_fmt yuv420p "
+                    "-f mp4 -movflags +faststart",
+                    width, height, rate));
+    std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
+    words.push_back(path.string());
+    return words;
 }
 
 }  // namespace

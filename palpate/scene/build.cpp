@@ -100,8 +100,10 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
         smooth(mesh, passes);
         did(fmt::format("smoothed {} times", passes));
     }
-    if (recipe.faces > 0)
+    if (recipe.faces > 0) {
         did(fmt::format("simplified away {} faces", decimate(mesh, std::size_t(recipe.faces))));
+        if (recipe.largest) keep_largest(mesh);  // without the crumbs that simplifying may break off
+    }
     rotate(mesh, recipe.rotate);
     for (vec3& p : mesh.positions) p += recipe.move;
     compute_normals(mesh);

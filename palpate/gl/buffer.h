@@ -1,0 +1,45 @@
+#pragma once
+#include "palpate/gl/handle.h"
+
+#include <cstddef>
+#include <ranges>
+#include <span>
+
+namespace palpate::gl {
+
+struct BufferKind {
+    static GLuint create() {
+        GLuint name = 0;
+        glCreateBuffers(1, &name);
+        return name;
+    }
+    static void remove(GLuint name) { glDeleteBuffers(1, &name); }
+};
+
+/// Memory of the GPU. Move-only; its context must be current whenever it is used, and when it ends.
+class Buffer {
+ public:
+    /// Holds nothing until upload().
+    Buffer() = default;
+
+    /// Filled here and never again from the host; shaders may still write to it.
+    template <std::ranges::contiguous_range Values>
+    explicit Buffer(const Values& values) : Buffer(std::as_bytes(std::span(values))) {}
+    explicit Buffer(std::span<const std::byte> bytes);
+
+    /// Replaces the contents, of any length. What was drawn from the old ones stays as it was. Not for a
+    /// buffer that was filled when it was made.
+    template <std::ranges::contiguous_range Values>
+    void upload(const Values& values) {
+        upload(std::as_bytes(std::span(values)));
+    }
+    void upload(std::span<const std::byte> bytes);
+
+    GLuint name() const { return handle_.name(); }
+
+ private:
+    Handle<BufferKind> handle_;
+    bool fixed_ = false;
+};
+
+}  // namespace palpate::gl

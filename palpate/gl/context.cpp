@@ -1,0 +1,171 @@
+#include "palpate/gl/context.h"
+
+#include "palpate/base/error.h"
+
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+namespace palpate::gl {
+namespace {
+
+constexpr const char* where = "OpenGL";
+constexpr const char* remedy =
+    "install libegl1, libopengl0 and libgl1-mesa-dri, or the graphics card's driver";
+
+bool can_load(const char* library) {
+    void* handle = dlopen(library, RTLD_LAZY);
+    if (handle) dlclose(handle);
+    return handle != nullptr;
+}
+
+// epoxy ends the program where a library is missing, so look first.
+void require_libraries() {
+    if (!can_load("libEGL.so.1")) throw Error("libEGL.so.1 is missing", where, remedy);
+    if (!can_load("libOpenGL.so.0") && !can_load("libGL.so.1"))
+        throw Error("libOpenGL.so.0 is missing", where, remedy);
+}
+
+bool is_software(EGLDeviceEXT device) {
+    const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return extensions &&
+           std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos;
+}
+
+// Where a context might be had, the best first. Mesa's surfaceless display does not see other makers' cards,
+// so the cards come before it; a software device comes last, for a Mesa without the surfaceless platform.
+std::vector<EGLDisplay> displays() {
+    std::vector<EGLDisplay> cards, rest;
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+        rest.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
+        std::array<EGLDeviceEXT, 16> devices{};
+        EGLint count = 0;
+        eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count);
+        for (int i = 0; i < count; ++i)
+            (is_software(devices[i]) ? rest : cards)
+                .push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
+    }
+    cards.insert(cards.end(), rest.begin(), rest.end());
+    return cards;
+}
+
+// A debug context, because only that is sure to report errors; we make few calls, so it costs nothing to
+// speak of.
+EGLContext create(EGLDisplay display) {
+    eglBindAPI(EGL_OPENGL_API);
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,  //
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,  //
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 EGL_TRUE,  //
+                                 EGL_NONE};
+    // No config, because it would describe a surface and there is none.
+    return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+}
+
+// The context keeps both objects, and takes them with it when it ends.
+void bind_one_pixel() {
+    GLuint pixel = 0, framebuffer = 0;
+    glCreateRenderbuffers(1, &pixel);
+    glNamedRenderbufferStorage(pixel, GL_RGBA8, 1, 1);
+    glCreateFramebuffers(1, &framebuffer);
+    glNamedFramebufferRenderbuffer(framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, pixel);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+}
+
+std::string text(GLenum what) {
+    const GLubyte* bytes = glGetString(what);
+    return bytes ? reinterpret_cast<const char*>(bytes) : "unknown";
+}
+
+}  // namespace
+
+// On the heap, so that the driver knows where to report errors, wherever the Context moves.
+struct Context::Parts {
+    // Never terminated: all contexts of the process share a display, and eglTerminate would end them all.
+    EGLDisplay display = EGL_NO_DISPLAY;
+    EGLContext context = EGL_NO_CONTEXT;
+    std::string renderer, version, first_error;
+    int errors = 0;
+
+    Parts();
+    ~Parts();
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
+
+    bool open(EGLDisplay candidate);
+    void listen();
+};
+
+Context::Parts::Parts() {
+    require_libraries();
+    bool any = false;
+    for (EGLDisplay candidate : displays()) {
+        if (!eglInitialize(candidate, nullptr, nullptr)) continue;
+        any = true;
+        if (open(candidate)) break;
+    }
+    if (!any) throw Error("no display for drawing without a window", where, remedy);
+    if (context == EGL_NO_CONTEXT) throw Error("no driver has version 4.5 core", where, remedy);
+    renderer = text(GL_RENDERER);
+    version = text(GL_VERSION);
+    listen();
+    bind_one_pixel();
+}
+
+Context::Parts::~Parts() {
+    if (eglGetCurrentContext() == context)
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+}
+
+bool Context::Parts::open(EGLDisplay candidate) {
+    EGLContext created = create(candidate);
+    if (created == EGL_NO_CONTEXT) return false;
+    if (!eglMakeCurrent(candidate, EGL_NO_SURFACE, EGL_NO_SURFACE, created)) {
+        eglDestroyContext(candidate, created);
+        return false;
+    }
+    display = candidate;
+    context = created;
+    return true;
+}
+
+void Context::Parts::listen() {
+    glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
+    glDebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_ERROR, GL_DONT_CARE, 0, nullptr, GL_TRUE);
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // an error is counted before its call returns
+    auto count = [](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar* message, const void* to) {
+        auto& parts = *static_cast<Parts*>(const_cast<void*>(to));
+        if (parts.errors++ == 0) parts.first_error = message;
+    };
+    glDebugMessageCallback(count, this);
+}
+
+Context::Context() : parts_(std::make_unique<Parts>()) {}
+Context::~Context() = default;
+Context::Context(Context&&) noexcept = default;
+Context& Context::operator=(Context&&) noexcept = default;
+
+void Context::make_current() const {
+    eglBindAPI(EGL_OPENGL_API);
+    if (!eglMakeCurrent(parts_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, parts_->context))
+        throw Error("the context cannot be used from this thread", where,
+                    "let the thread that used it before end, or draw there");
+}
+
+const std::string& Context::renderer() const { return parts_->renderer; }
+const std::string& Context::version() const { return parts_->version; }
+int Context::errors() const { return parts_->errors; }
+const std::string& Context::first_error() const { return parts_->first_error; }
+
+}  // namespace palpate::gl

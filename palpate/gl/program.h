@@ -1,0 +1,49 @@
+#pragma once
+#include "palpate/base/vectors.h"
+#include "palpate/gl/handle.h"
+
+#include <initializer_list>
+#include <span>
+#include <string_view>
+
+namespace palpate::gl {
+
+/// The text of one shader file.
+struct Shader {
+    GLenum stage;           // GL_VERTEX_SHADER, ...
+    std::string_view file;  // its name, for errors
+    std::string_view text;
+};
+
+struct ProgramKind {
+    static GLuint create() { return glCreateProgram(); }
+    static void remove(GLuint name) { glDeleteProgram(name); }
+};
+
+/// Shaders that run together. Move-only; its context must be current whenever it is used, and when it ends.
+class Program {
+ public:
+    /// Several shaders of one stage are linked into one, as C links several files: functions that one
+    /// declares, another defines. Throws Error with the file's name and the driver's first complaint.
+    explicit Program(std::initializer_list<Shader> shaders);
+
+    void use() const { glUseProgram(handle_.name()); }
+
+    /// Sets a uniform, in use or not. A name that the shaders do not use is ignored, so that several programs
+    /// can be told the same things.
+    void set(const char* name, int value) const;
+    void set(const char* name, float value) const;
+    void set(const char* name, vec2 value) const;
+    void set(const char* name, vec3 value) const;
+    void set(const char* name, vec4 value) const;
+    void set(const char* name, const mat4& value) const;
+    void set(const char* name, std::span<const vec3> values) const;
+
+    GLuint name() const { return handle_.name(); }
+
+ private:
+    GLint location(const char* uniform) const { return glGetUniformLocation(name(), uniform); }
+    Handle<ProgramKind> handle_;
+};
+
+}  // namespace palpate::gl

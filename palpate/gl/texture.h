@@ -1,0 +1,28 @@
+#pragma once
+#include "palpate/gl/handle.h"
+
+namespace palpate::gl {
+
+struct TextureKind {
+    static void remove(GLuint name) { glDeleteTextures(1, &name); }
+};
+
+/// A flat picture in the GPU's memory, for shaders to read and framebuffers to write. Move-only; its context
+/// must be current whenever it is used, and when it ends.
+class Texture {
+ public:
+    /// `format` is a sized one, such as GL_RGBA8. With more than one sample a pixel, shaders cannot filter
+    /// it.
+    Texture(GLenum format, int width, int height, int samples = 1);
+
+    GLuint name() const { return handle_.name(); }
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+ private:
+    Handle<TextureKind> handle_;
+    int width_;
+    int height_;
+};
+
+}  // namespace palpate::gl

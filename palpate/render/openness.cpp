@@ -1,0 +1,77 @@
+#include "palpate/render/openness.h"
+
+#include "palpate/render/view.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace palpate {
+namespace {
+
+constexpr int lights = 64;
+constexpr int map_size = 512;
+constexpr int group = 256;  // as in openness.comp
+
+const char* openness_comp =
+#include "embedded/openness.comp.h"
+    ;
+
+// Evenly over the sphere, on a spiral whose turns are the golden angle apart.
+vec3 spread(int i) {
+    const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+    const double z = 1 - (2 * i + 1.0) / lights;
+    const double r = std::sqrt(1 - z * z);
+    return vec3(r * std::cos(golden * i), r * std::sin(golden * i), z);
+}
+
+std::vector<vec3> normals_of(const Mesh& mesh) {
+    if (!mesh.normals.empty()) return mesh.normals;
+    std::vector<vec3> normals;
+    compute_normals(mesh.positions, mesh.triangles, normals);
+    return normals;
+}
+
+}  // namespace
+
+Openness::Openness() : map_(map_size), gather_({{GL_COMPUTE_SHADER, "openness.comp", openness_comp}}) {}
+
+gl::Buffer Openness::measure(const Mesh& mesh) const {
+    const std::vector<float> none(mesh.positions.size(), 0.0f);
+    gl::Buffer openness(none);
+    const gl::Buffer positions(mesh.positions);
+    const gl::Buffer normals(normals_of(mesh));
+    const gl::Buffer triangles(mesh.triangles);
+    const Extent extent = around(bounds_of(mesh.positions));
+
+    gl::VertexArray corners;
+    glEnableVertexArrayAttrib(corners.name(), 0);
+    glVertexArrayAttribFormat(corners.name(), 0, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayVertexBuffer(corners.name(), 0, positions.name(), 0, sizeof(vec3));
+    glVertexArrayElementBuffer(corners.name(), triangles.name());
+    glBindVertexArray(corners.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, positions.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, normals.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, openness.name());
+    map_.bind();
+
+    gather_.set("lift", 3 * extent.radius / map_size);
+    gather_.set("share", 4.0f / lights);  // a free surface faces half of the lights, at one half on average
+    for (int i = 0; i < lights; ++i) {
+        const vec3 to_light = spread(i);
+        const mat4 to_clip = along(-to_light, extent);
+        const gl::Program& shadow = map_.begin(to_clip);
+        shadow.set("centre", vec3(0));
+        shadow.set("size", 1.0f);
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * mesh.triangles.size()), GL_UNSIGNED_INT,
+                       nullptr);
+
+        gather_.use();
+        gather_.set("to_shadow", to_texture(to_clip));
+        gather_.set("to_light", to_light);
+        glDispatchCompute(static_cast<GLuint>((mesh.positions.size() + group - 1) / group), 1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    }
+    return openness;
+}
+
+}  // namespace palpate

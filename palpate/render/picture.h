@@ -1,0 +1,55 @@
+#pragma once
+#include "palpate/base/vectors.h"
+#include "palpate/scene/camera.h"
+
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+struct Look {
+    vec3 colour = vec3(0.8f, 0.42f, 0.38f);  // linear red, green and blue, 0 to 1; living tissue by default
+    float shine = 0.6f;                      // 0 as dull as chalk, 1 as wet as an eye
+};
+
+/// A mesh where it is now. The spans are read during Renderer::draw only; each has one entry a vertex of the
+/// mesh.
+struct Surface {
+    int mesh = 0;                     // a number from Renderer::add
+    std::span<const vec3> positions;  // m
+    std::span<const vec3> normals;    // unit
+    Look look;
+};
+
+/// Thin lines, such as the springs of a lattice. What a surface hides of them shines through faintly.
+struct Wires {
+    std::span<const vec3> points;  // m
+    std::span<const uvec2> lines;  // each between two of the points
+    vec3 colour = vec3(0.02f, 0.1f, 0.3f);
+};
+
+/// A round thing, such as the tip of a tool.
+struct Ball {
+    vec3 centre = vec3(0);  // m
+    float radius = 0.006f;  // m
+    vec3 colour = vec3(0.75f, 0.76f, 0.8f);
+};
+
+/// The points p with dot(normal, p) = offset, shown around the things that are drawn, and only from the side
+/// to which the normal points.
+struct Ground {
+    vec3 normal = vec3(0, 1, 0);  // need not be unit
+    float offset = 0;             // m, for a unit normal
+};
+
+/// All that one frame shows. Plain data; an empty one shows the background.
+struct Picture {
+    Camera camera;
+    Light light;
+    std::vector<Surface> surfaces;
+    std::vector<Wires> wires;
+    std::vector<Ball> balls;
+    std::vector<Ground> grounds;
+};
+
+}  // namespace palpate

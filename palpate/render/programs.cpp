@@ -1,0 +1,60 @@
+#include "palpate/render/programs.h"
+
+namespace palpate {
+namespace {
+
+const char* background_frag =
+#include "embedded/background.frag.h"
+    ;
+const char* ground_frag =
+#include "embedded/ground.frag.h"
+    ;
+const char* ground_vert =
+#include "embedded/ground.vert.h"
+    ;
+const char* light_frag =
+#include "embedded/light.frag.h"
+    ;
+const char* screen_vert =
+#include "embedded/screen.vert.h"
+    ;
+const char* sky_glsl =
+#include "embedded/sky.glsl.h"
+    ;
+const char* surface_frag =
+#include "embedded/surface.frag.h"
+    ;
+const char* surface_vert =
+#include "embedded/surface.vert.h"
+    ;
+const char* tone_frag =
+#include "embedded/tone.frag.h"
+    ;
+const char* wires_frag =
+#include "embedded/wires.frag.h"
+    ;
+const char* wires_vert =
+#include "embedded/wires.vert.h"
+    ;
+
+}  // namespace
+
+Programs::Programs()
+    : background({{GL_VERTEX_SHADER, "screen.vert", screen_vert},
+                  {GL_FRAGMENT_SHADER, "background.frag", background_frag},
+                  {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}),
+      surface({{GL_VERTEX_SHADER, "surface.vert", surface_vert},
+               {GL_VERTEX_SHADER, "sky.glsl", sky_glsl},
+               {GL_FRAGMENT_SHADER, "surface.frag", surface_frag},
+               {GL_FRAGMENT_SHADER, "light.frag", light_frag},
+               {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}),
+      ground({{GL_VERTEX_SHADER, "ground.vert", ground_vert},
+              {GL_FRAGMENT_SHADER, "ground.frag", ground_frag},
+              {GL_FRAGMENT_SHADER, "sky.glsl", sky_glsl},
+              {GL_FRAGMENT_SHADER, "light.frag", light_frag},
+              {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}),
+      wires({{GL_VERTEX_SHADER, "wires.vert", wires_vert},
+             {GL_FRAGMENT_SHADER, "wires.frag", wires_frag},
+             {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}) {}
+
+}  // namespace palpate

@@ -1,0 +1,297 @@
+#include "palpate/render/renderer.h"
+
+#include "palpate/gl/buffer.h"
+#include "palpate/gl/context.h"
+#include "palpate/render/lighting.h"
+#include "palpate/render/openness.h"
+#include "palpate/render/programs.h"
+#include "palpate/render/shadow_map.h"
+#include "palpate/render/target.h"
+#include "palpate/render/unit_ball.h"
+#include "palpate/render/view.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr int shadow_size = 1024;    // pixels
+constexpr float wire_width = 1.3f;   // pixels
+constexpr float wire_lift = 0.005f;  // in radii of the things; see wires.vert
+constexpr float ball_shine = 0.4f;
+
+// The attributes of surface.vert.
+enum Attribute : GLuint { position_attribute, normal_attribute, openness_attribute };
+
+// What does not move of a mesh.
+struct Model {
+    gl::Buffer triangles;
+    gl::Buffer openness;
+    GLsizei corners = 0;
+    std::size_t vertices = 0;
+    bool closed = false;  // then nobody sees its triangles from behind
+};
+
+// What moves of it, for one surface of the picture.
+struct Moving {
+    gl::Buffer positions;
+    gl::Buffer normals;
+};
+
+// Whether triangles lie on both sides of every edge and turn their fronts outwards.
+bool closed(const Mesh& mesh) {
+    std::vector<std::pair<unsigned, unsigned>> there, back;
+    for (uvec3 t : mesh.triangles)
+        for (auto [a, b] : {std::pair(t.x, t.y), std::pair(t.y, t.z), std::pair(t.z, t.x)}) {
+            there.emplace_back(a, b);
+            back.emplace_back(b, a);
+        }
+    std::sort(there.begin(), there.end());
+    std::sort(back.begin(), back.end());
+    return there == back && volume(mesh) > 0;
+}
+
+Model model(const Mesh& mesh, gl::Buffer openness) {
+    return {gl::Buffer(mesh.triangles), std::move(openness), static_cast<GLsizei>(3 * mesh.triangles.size()),
+            mesh.positions.size(), closed(mesh)};
+}
+
+gl::Buffer wide_open(std::size_t vertices) {
+    const std::vector<float> ones(vertices, 1.0f);
+    return gl::Buffer(ones);
+}
+
+// Three attributes, each from a buffer of its own.
+gl::VertexArray corners_of_surfaces() {
+    gl::VertexArray corners;
+    auto attribute = [&](Attribute number, int numbers) {
+        glEnableVertexArrayAttrib(corners.name(), number);
+        glVertexArrayAttribFormat(corners.name(), number, numbers, GL_FLOAT, GL_FALSE, 0);
+        glVertexArrayAttribBinding(corners.name(), number, number);
+    };
+    attribute(position_attribute, 3);
+    attribute(normal_attribute, 3);
+    attribute(openness_attribute, 1);
+    return corners;
+}
+
+// The square of ground that is drawn: its middle is below the things.
+struct Square {
+    vec3 upright;
+    vec3 middle;
+    float half;  // m; half as wide
+};
+
+Square square(const Ground& ground, const Extent& things) {
+    const vec3 upright = unit(ground.normal, vec3(0, 1, 0));
+    const float away = ground.offset - dot(upright, things.centre);
+    return {upright, things.centre + away * upright, 3.5f * things.radius + 2 * std::abs(away)};
+}
+
+// Around the grounds as well, which the near and far planes must not cut.
+Extent reach(const Picture& picture, const Extent& things) {
+    Extent all = things;
+    for (const Ground& ground : picture.grounds) {
+        const Square part = square(ground, things);
+        const float corner = distance(part.middle, things.centre) + 1.5f * part.half;
+        all.radius = std::max(all.radius, corner);
+    }
+    return all;
+}
+
+}  // namespace
+
+struct Renderer::Parts {
+    gl::Context context;  // first, because all the rest lives in it
+    Target target;
+    ShadowMap shadow{shadow_size};
+    Openness openness;
+
+    Programs programs;
+
+    gl::VertexArray surface_corners = corners_of_surfaces();
+    gl::VertexArray no_corners;  // for shaders that make their own
+    std::vector<Model> models;
+    std::vector<Moving> moving;
+    Model ball_model;
+    Moving ball_shape;
+    gl::Buffer wire_points, wire_lines;
+
+    explicit Parts(Offscreen size);
+    ~Parts() { context.make_current(); }
+
+    void draw(const Picture& picture);
+    void upload(const std::vector<Surface>& surfaces);
+    void cast_shadows(const Picture& picture, const Lighting& light) const;
+    void draw_background() const;
+    void draw_surfaces(const std::vector<Surface>& surfaces, const gl::Program& program) const;
+    void draw_balls(const std::vector<Ball>& balls, const gl::Program& program) const;
+    void draw_model(const Model& model, const Moving& shape) const;
+    void draw_wires(const Wires& some, const View& seen, const Extent& things);
+    void draw_ground(const Ground& one, const View& seen, const Extent& things) const;
+};
+
+Renderer::Parts::Parts(Offscreen size) : target(size.width, size.height) {
+    const Mesh mesh = unit_ball();
+    ball_model = model(mesh, wide_open(mesh.positions.size()));
+    ball_shape.positions = gl::Buffer(mesh.positions);
+    ball_shape.normals = gl::Buffer(mesh.normals);
+}
+
+void Renderer::Parts::draw(const Picture& picture) {
+    const Extent things = extent(picture);
+    const View seen = view(picture.camera, target.aspect(), reach(picture, things));
+    const Lighting light = lighting(picture, shadow_size);
+    tell(programs.surface, seen, light, picture.balls.size());
+    tell(programs.ground, seen, light, light.round.size());
+
+    upload(picture.surfaces);
+    cast_shadows(picture, light);
+    target.begin();
+    draw_background();
+    glEnable(GL_DEPTH_TEST);
+    draw_surfaces(picture.surfaces, programs.surface);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    for (const Wires& some : picture.wires) draw_wires(some, seen, things);
+    // After the wires, which shine through a surface but not through a tool.
+    draw_balls(picture.balls, programs.surface);
+    for (const Ground& one : picture.grounds) draw_ground(one, seen, things);
+    glDisable(GL_BLEND);
+    target.end();
+}
+
+void Renderer::Parts::upload(const std::vector<Surface>& surfaces) {
+    while (moving.size() < surfaces.size()) moving.emplace_back();
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        assert(surfaces[i].positions.size() == models.at(surfaces[i].mesh).vertices);
+        assert(surfaces[i].normals.size() == surfaces[i].positions.size());
+        moving[i].positions.upload(surfaces[i].positions);
+        moving[i].normals.upload(surfaces[i].normals);
+    }
+}
+
+void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light) const {
+    const gl::Program& program = shadow.begin(light.to_clip);
+    draw_surfaces(picture.surfaces, program);
+    draw_balls(picture.balls, program);
+    shadow.bind();
+}
+
+void Renderer::Parts::draw_background() const {
+    programs.background.use();
+    programs.background.set("picture", vec2(target.width(), target.height()));
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(no_corners.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const gl::Program& program) const {
+    program.use();
+    program.set("centre", vec3(0));
+    program.set("size", 1.0f);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        program.set("look", surfaces[i].look.colour);
+        program.set("shine", surfaces[i].look.shine);
+        draw_model(models[surfaces[i].mesh], moving[i]);
+    }
+}
+
+void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const gl::Program& program) const {
+    program.use();
+    program.set("shine", ball_shine);
+    for (const Ball& ball : balls) {
+        program.set("centre", ball.centre);
+        program.set("size", ball.radius);
+        program.set("look", ball.colour);
+        draw_model(ball_model, ball_shape);
+    }
+}
+
+void Renderer::Parts::draw_model(const Model& model, const Moving& shape) const {
+    const GLuint corners = surface_corners.name();
+    glVertexArrayVertexBuffer(corners, position_attribute, shape.positions.name(), 0, sizeof(vec3));
+    glVertexArrayVertexBuffer(corners, normal_attribute, shape.normals.name(), 0, sizeof(vec3));
+    glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
+    glVertexArrayElementBuffer(corners, model.triangles.name());
+    glBindVertexArray(corners);
+    // Fragments are what costs, and half of them would be the far side's.
+    if (model.closed) glEnable(GL_CULL_FACE);
+    glDrawElements(GL_TRIANGLES, model.corners, GL_UNSIGNED_INT, nullptr);
+    glDisable(GL_CULL_FACE);
+}
+
+// Twice: where nothing hides the lines, and then faintly the others.
+void Renderer::Parts::draw_wires(const Wires& some, const View& seen, const Extent& things) {
+    if (some.lines.empty()) return;
+    wire_points.upload(some.points);
+    wire_lines.upload(some.lines);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, wire_points.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, wire_lines.name());
+    const gl::Program& wires = programs.wires;
+    wires.use();
+    wires.set("to_clip", seen.to_clip);
+    wires.set("eye", seen.eye);
+    wires.set("lift", wire_lift * things.radius);
+    wires.set("middle", things.centre);
+    wires.set("radius", things.radius);
+    wires.set("picture", vec2(target.width(), target.height()));
+    wires.set("width", wire_width);
+    wires.set("look", some.colour);
+    glBindVertexArray(no_corners.name());
+
+    const auto lines = static_cast<GLsizei>(some.lines.size());
+    wires.set("near", 1.0f);
+    wires.set("far", 0.15f);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lines);
+
+    wires.set("near", 0.4f);
+    wires.set("far", -0.3f);
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lines);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+}
+
+void Renderer::Parts::draw_ground(const Ground& one, const View& seen, const Extent& things) const {
+    const Square part = square(one, things);
+    const bool from_above = dot(vec3(seen.eye) - seen.eye.w * part.middle, part.upright) > 0;
+    if (!from_above) return;
+    const mat3 frame = axes(part.upright, seen.up);
+    const gl::Program& ground = programs.ground;
+    ground.use();
+    ground.set("upright", part.upright);
+    ground.set("middle", part.middle);
+    ground.set("along", part.half * frame[0]);
+    ground.set("across", part.half * frame[1]);
+    glBindVertexArray(no_corners.name());
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+Renderer::Renderer(Offscreen size) : parts_(std::make_unique<Parts>(size)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+int Renderer::add(const Mesh& mesh) {
+    parts_->context.make_current();
+    parts_->models.push_back(model(mesh, parts_->openness.measure(mesh)));
+    return static_cast<int>(parts_->models.size()) - 1;
+}
+
+void Renderer::draw(const Picture& picture) {
+    parts_->context.make_current();
+    parts_->draw(picture);
+}
+
+Image Renderer::image() const {
+    parts_->context.make_current();
+    return parts_->target.read();
+}
+
+const gl::Context& Renderer::context() const { return parts_->context; }
+
+}  // namespace palpate

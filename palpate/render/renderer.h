@@ -1,0 +1,50 @@
+#pragma once
+#include "palpate/mesh/image.h"
+#include "palpate/mesh/mesh.h"
+#include "palpate/render/picture.h"
+
+#include <memory>
+
+namespace palpate {
+
+namespace gl {
+class Context;
+}
+
+/// A picture in memory, in pixels.
+struct Offscreen {
+    int width = 1280;
+    int height = 720;
+};
+
+/// Draws pictures. Move-only. Each has an OpenGL context of its own, which every call makes current on its
+/// thread.
+class Renderer {
+ public:
+    /// Throws Error if there is no OpenGL, or if it cannot draw pictures of that size.
+    explicit Renderer(Offscreen size);
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    /// Keeps what does not move of a mesh: its triangles, and how deep each vertex lies in a groove, which
+    /// takes about a second for 100,000 triangles on a software driver. Returns the number by which
+    /// Surface::mesh names it.
+    int add(const Mesh& mesh);
+
+    /// Draws one frame. Same picture, same pixels. Odd pictures are drawn as well as they can be: nothing in
+    /// them, a camera that looks at its own eye, points that are not finite.
+    void draw(const Picture& picture);
+
+    /// The last frame that was drawn; black before the first.
+    Image image() const;
+
+    /// Names the driver, and counts its complaints.
+    const gl::Context& context() const;
+
+ private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace palpate

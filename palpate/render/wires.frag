@@ -1,0 +1,14 @@
+#version 450 core
+// A thin line. It pales with distance, so that a lattice shows its near side and not a tangle.
+
+in float nearness;
+
+uniform vec3 look;
+uniform float far;   // the opacity at the far side of the things; below 0 to vanish before
+uniform float near;  // and at the near side
+
+out vec4 colour;
+
+vec3 shown(vec3 light);
+
+void main() { colour = vec4(shown(look), max(mix(far, near, smoothstep(-0.3, 0.6, nearness)), 0)); }

@@ -1,0 +1,178 @@
+// The palpate command as its users meet it: what it prints, how it ends, what it leaves behind.
+#include "palpate/base/files.h"
+#include "palpate/base/pipe.h"
+#include "palpate/mesh/write.h"
+#include "tests/scratch.h"
+#include "tests/shapes.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+
+namespace palpate {
+namespace {
+
+struct Outcome {
+    int status;
+    std::string said;  // both streams
+};
+
+Outcome shell(const std::string& command) {
+    std::FILE* pipe = popen(("exec 2>&1; " + command).c_str(), "r");
+    Outcome outcome{-1, {}};
+    std::array<char, 4096> block;
+    while (const std::size_t n = std::fread(block.data(), 1, block.size(), pipe))
+        outcome.said.append(block.data(), n);
+    const int ended = pclose(pipe);
+    outcome.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
+    return outcome;
+}
+
+Outcome palpate(const std::string& arguments) {
+    return shell(std::string(PALPATE_COMMAND) + " " + arguments);
+}
+
+// Failed with exactly one line, which says these words.
+void expect_one_line(const Outcome& outcome, std::initializer_list<std::string> words) {
+    EXPECT_EQ(outcome.status, 1) << outcome.said;
+    EXPECT_TRUE(outcome.said.starts_with("palpate: error: ")) << outcome.said;
+    EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1) << outcome.said;
+    for (const std::string& word : words)
+        EXPECT_NE(outcome.said.find(word), std::string::npos) << outcome.said;
+}
+
+const std::string brain = "/usr/share/mricron/templates/ch2bet.nii.gz";
+bool have_brain() { return std::filesystem::exists(brain); }
+
+TEST(Command, UsageErrorsEndWithTwo) {
+    for (const char* arguments : {"", "fly", "run", "run box --frames many", "run box --size 12",
+                                  "run box --fast", "list", "import x.ply", "run box --frames 1 --steps 1"})
+        EXPECT_EQ(palpate(arguments).status, 2) << arguments;
+    EXPECT_EQ(palpate("--help").status, 0);
+    EXPECT_EQ(palpate("run --help").status, 0);
+}
+
+TEST(Command, ListsWhatThereIs) {
+    EXPECT_NE(palpate("list integrators").said.find("verlet"), std::string::npos);
+    EXPECT_NE(palpate("list backends").said.find("reference"), std::string::npos);
+    EXPECT_NE(palpate("list mappings").said.find("trilinear"), std::string::npos);
+    EXPECT_NE(palpate("list devices").said.find("script"), std::string::npos);
+    EXPECT_NE(palpate("list scenes").said.find("brain"), std::string::npos);
+}
+
+TEST(Command, RunsAndReports) {
+    Scratch scratch;
+    const Outcome outcome = palpate("run box --frames 30 --report " + (scratch / "r.json").string());
+    EXPECT_EQ(outcome.status, 0) << outcome.said;
+    EXPECT_NE(outcome.said.find("nodes, springs"), std::string::npos);
+    EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": false"), std::string::npos);
+}
+
+TEST(Command, ScenesThatDoNotFit) {
+    Scratch scratch;
+    expect_one_line(palpate("run no-such-scene"), {"no-such-scene", "brain"});
+    expect_one_line(palpate("run box --integrator rk9"), {"rk9", "verlet"});
+    expect_one_line(palpate("run box --set body.beam.nods=3"), {"nods", "nodes"});
+    write_text(
+        scratch / "bad.toml",
+        "[[body]]\nname = \"a\"\nvolume = \"missing.nii\"\niso = 1\nyoungs_modulus = 1\ndensity = 1\n");
+    expect_one_line(palpate("run " + (scratch / "bad.toml").string()), {"missing.nii", "PALPATE_DATA"});
+    write_text(scratch / "bad.toml", "[[body]]\nname = \"a\"\nnods = 3\n");
+    expect_one_line(palpate("run " + (scratch / "bad.toml").string()),
+                    {"bad.toml", "line 3", "nods", "nodes"});
+    expect_one_line(palpate("run " + (scratch / ".").string()), {"folder"});
+    expect_one_line(palpate("run box --set simulation.step=0.5"), {"verlet", "--force"});
+}
+
+TEST(Command, DivergenceIsReported) {
+    Scratch scratch;
+    const Outcome outcome =
+        palpate("run box --set simulation.step=0.0165 --force --report " + (scratch / "r.json").string());
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.said.find("blew up"), std::string::npos) << outcome.said;
+    EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": true"), std::string::npos);
+}
+
+TEST(Command, BadMeshesAndVolumes) {
+    Scratch scratch;
+    const std::string out = " -o " + (scratch / "out.ply").string();
+    auto refuse = [&](const std::string& name, const std::string& content, const std::string& more = "") {
+        write_text(scratch / name, content);
+        expect_one_line(palpate("import " + (scratch / name).string() + out + more), {name});
+        expect_one_line(palpate("info " + (scratch / name).string()), {name});
+    };
+    const std::string header = "ply\nformat ascii 1.0\nelement vertex ";
+    const std::string rest =
+        "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    refuse("empty.ply", "");
+    refuse("words.ply", "this is not a mesh\n");
+    refuse("lying.ply", header + "1099511627776" + rest + "0 0 0\n");
+    refuse("nan.ply", header + "3" + rest + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n");
+    refuse("missing-vertex.ply", header + "3" + rest + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+    refuse("truncated.ply", header + "3" + rest + "0 0 0\n1 0");
+    refuse("empty.obj", "");
+    refuse("empty.nii", "", " --iso 1");
+    refuse("empty.nii.gz", "", " --iso 1");
+    refuse("words.nii", std::string(400, 'x'), " --iso 1");
+    expect_one_line(palpate("import " + (scratch / "none.ply").string() + out), {"none.ply"});
+    expect_one_line(palpate("import " + (scratch / "a.xyz").string() + out), {"a.xyz"});
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out.ply"));
+    if (!have_brain()) GTEST_SKIP() << "mricron-data is not available";
+    refuse("truncated.nii.gz", read_text(brain).substr(0, 500'000), " --iso 60.5");
+    expect_one_line(palpate("import " + brain + out + " --iso 999"), {"ch2bet", "999"});
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out.ply"));
+}
+
+TEST(Command, ImportsABrain) {
+    if (!have_brain()) GTEST_SKIP() << "mricron-data is not available";
+    Scratch scratch;
+    const std::string out = (scratch / "brain.ply").string();
+    const Outcome made =
+        palpate("import " + brain + " -o " + out + " --iso 60.5 --largest --faces 140000 --rotate -90 0 0");
+    EXPECT_EQ(made.status, 0) << made.said;
+    const Outcome info = palpate("info --json " + out);
+    EXPECT_EQ(info.status, 0) << info.said;
+    for (const char* fact : {"\"parts\": 1,", "\"open_edges\": 0,", "\"bad_edges\": 0,"})
+        EXPECT_NE(info.said.find(fact), std::string::npos) << info.said;
+}
+
+TEST(Command, AFullDiskLeavesNothing) {
+    // A limit on the size of files stands for a full disk: writing fails in the same way.
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(0.05f), 60), scratch / "ball.ply");
+    const std::string limited = "trap '' XFSZ; ulimit -f 8; " + std::string(PALPATE_COMMAND) + " ";
+    expect_one_line(shell(limited + "import " + (scratch / "ball.ply").string() + " -o " +
+                          (scratch / "out.ply").string()),
+                    {"out.ply", "disk"});
+    expect_one_line(shell(limited + "run box --frames 2 --nodes " + (scratch / "nodes.csv").string()),
+                    {"nodes.csv", "disk"});
+    EXPECT_EQ(scratch.entries(), 1u);
+}
+
+TEST(Command, AFilmThatFailsLeavesNothing) {
+    if (!has_program("ffmpeg")) GTEST_SKIP() << "ffmpeg is not available";
+    Scratch scratch;
+    const Outcome outcome = shell("trap '' XFSZ; ulimit -f 8; " + std::string(PALPATE_COMMAND) +
+                                  " run box --frames 30 --video " + (scratch / "film.mp4").string());
+    if (outcome.said.find("OpenGL") != std::string::npos) GTEST_SKIP() << "OpenGL is not available";
+    EXPECT_EQ(outcome.status, 1) << outcome.said;
+    EXPECT_NE(outcome.said.find("palpate: error: "), std::string::npos) << outcome.said;
+    EXPECT_EQ(scratch.entries(), 0u);
+}
+
+TEST(Command, InfoNamesSizesInMetres) {
+    Scratch scratch;
+    write_mesh(block(vec3(0), vec3(50, 100, 200)), scratch / "block.ply");
+    const Outcome metres = palpate("info " + (scratch / "block.ply").string());
+    EXPECT_NE(metres.said.find("unit right"), std::string::npos) << metres.said;
+    const Outcome millimetres = palpate("info --units mm " + (scratch / "block.ply").string());
+    EXPECT_NE(millimetres.said.find("0.05 x 0.1 x 0.2"), std::string::npos) << millimetres.said;
+    EXPECT_EQ(millimetres.said.find("unit right"), std::string::npos) << millimetres.said;
+    EXPECT_EQ(palpate("info --units miles " + (scratch / "block.ply").string()).status, 2);
+}
+
+}  // namespace
+}  // namespace palpate
