@@ -16,6 +16,8 @@ struct BufferKind {
     static void remove(GLuint name) { glDeleteBuffers(1, &name); }
 };
 
+using Bytes = std::span<const std::byte>;
+
 /// Memory of the GPU. Move-only; its context must be current whenever it is used, and when it ends.
 class Buffer {
  public:
@@ -24,16 +26,16 @@ class Buffer {
 
     /// Filled here and never again from the host; shaders may still write to it.
     template <std::ranges::contiguous_range Values>
-    explicit Buffer(const Values& values) : Buffer(std::as_bytes(std::span(values))) {}
-    explicit Buffer(std::span<const std::byte> bytes);
+    explicit Buffer(const Values& values) : Buffer(Bytes(std::as_bytes(std::span(values)))) {}
+    explicit Buffer(Bytes bytes);
 
     /// Replaces the contents, of any length. What was drawn from the old ones stays as it was. Not for a
     /// buffer that was filled when it was made.
     template <std::ranges::contiguous_range Values>
     void upload(const Values& values) {
-        upload(std::as_bytes(std::span(values)));
+        upload(Bytes(std::as_bytes(std::span(values))));
     }
-    void upload(std::span<const std::byte> bytes);
+    void upload(Bytes bytes);
 
     GLuint name() const { return handle_.name(); }
 

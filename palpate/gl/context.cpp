@@ -58,17 +58,13 @@ std::vector<EGLDisplay> displays() {
 // speak of.
 EGLContext create(EGLDisplay display) {
     eglBindAPI(EGL_OPENGL_API);
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 4,  //
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 5,  //
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_CONTEXT_OPENGL_DEBUG,
-                                 EGL_TRUE,  //
-                                 EGL_NONE};
+    const EGLint attributes[][2] = {{EGL_CONTEXT_MAJOR_VERSION, 4},
+                                    {EGL_CONTEXT_MINOR_VERSION, 5},
+                                    {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT},
+                                    {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE},
+                                    {EGL_NONE, EGL_NONE}};
     // No config, because it would describe a surface and there is none.
-    return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes[0]);
 }
 
 // The context keeps both objects, and takes them with it when it ends.
@@ -141,7 +137,7 @@ bool Context::Parts::open(EGLDisplay candidate) {
 
 void Context::Parts::listen() {
     glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
-    glDebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_ERROR, GL_DONT_CARE, 0, nullptr, GL_TRUE);
+    glDebugMessageControl(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_ERROR, GL_DONT_CARE, 0, nullptr, GL_TRUE);
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // an error is counted before its call returns
     auto count = [](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar* message, const void* to) {

@@ -1,5 +1,5 @@
 #version 450 core
-// How a place on anything is lit: by a key light with soft shadows and by the sky, with the glints of a wet skin.
+// How a place on anything is lit: by a key light with soft shadows and by the sky, with glints where it is wet.
 
 layout(binding = 0) uniform sampler2DShadow shadow;  // whether light gets there
 layout(binding = 1) uniform sampler2D stopped;       // the same map, but where the light was stopped
@@ -14,7 +14,7 @@ uniform vec3 up;             // unit
 const mat2 golden_turn = mat2(-0.737369, 0.675490, -0.675490, -0.737369);
 float out_to(int i, int count) { return sqrt((i + 0.5) / count); }
 
-// The share of the key light that gets to a place, averaged over a disc of `softness` pixels of the shadow map.
+// The share of the key light that gets to a place, averaged over a disc of `softness` pixels of the map.
 float key_share(vec3 place, vec3 normal, float softness, int taps) {
     float facing = dot(normal, to_light);
     float sine = sqrt(max(1 - facing * facing, 0));
@@ -51,8 +51,8 @@ float soft_key_share(vec3 place, vec3 normal) {
     return key_share(place, normal, clamp(lamp * pixels * above / count, narrow, wide), 40);
 }
 
-// The share of the sky's light that a groove with some share of the sky gives back: in it, light bounces and takes on
-// the thing's colour, the more the brighter that is (Jimenez et al. 2016, equation for multiple bounces).
+// The share of the sky's light that a groove with some share of the sky gives back: in it, light bounces and
+// takes on the thing's colour, the more the brighter that is (Jimenez et al. 2016, multiple bounces).
 vec3 bounced(float sky, vec3 look) {
     vec3 a = 2.0404 * look - 0.3324, b = -4.7951 * look + 0.6417, c = 2.7552 * look + 0.6903;
     return max(vec3(sky), ((sky * a + b) * sky + c) * sky);
@@ -72,13 +72,13 @@ vec3 studio(vec3 direction, float rough) {
     return mix(vec3(0.10, 0.095, 0.09), vec3(0.9, 0.95, 1.05), smoothstep(0.1 - rough, 0.5 + rough, height));
 }
 
-// Light that leaves a place for the eye. `look` is its colour, `sky` and `share` are the shares of the sky and of the
-// key light that get there.
+// Light that leaves a place for the eye. `look` is its colour, `sky` and `share` are the shares of the sky and of
+// the key light that get there.
 vec3 lit(vec3 normal, vec3 to_eye, vec3 look, float shine, float sky, float share) {
     float facing = max(dot(normal, to_light), 0);
     float facing_eye = max(dot(normal, to_eye), 1e-3);
 
-    // Light that enters soft tissue leaves it nearby, in the colour that it absorbs least: its shade begins warm.
+    // Light that enters soft tissue leaves it nearby in the colour that it absorbs least: shade begins warm.
     float direct = facing * share;
     float least = min(look.r, min(look.g, look.b)), most = max(look.r, max(look.g, look.b));
     vec3 seeping = direct * (1 + (1 - direct) * (look - least) / max(most, 1e-3));

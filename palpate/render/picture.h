@@ -15,16 +15,16 @@ struct Look {
 /// A mesh where it is now. The spans are read during Renderer::draw only; each has one entry a vertex of the
 /// mesh.
 struct Surface {
-    int mesh = 0;                     // a number from Renderer::add
-    std::span<const vec3> positions;  // m
-    std::span<const vec3> normals;    // unit
-    Look look;
+    int mesh = 0;                          // a number from Renderer::add
+    std::span<const vec3> positions = {};  // m
+    std::span<const vec3> normals = {};    // unit
+    Look look = {};
 };
 
 /// Thin lines, such as the springs of a lattice. What a surface hides of them shines through faintly.
 struct Wires {
-    std::span<const vec3> points;  // m
-    std::span<const uvec2> lines;  // each between two of the points
+    std::span<const vec3> points = {};  // m
+    std::span<const uvec2> lines = {};  // each between two of the points
     vec3 colour = vec3(0.02f, 0.1f, 0.3f);
 };
 
@@ -44,12 +44,12 @@ struct Ground {
 
 /// All that one frame shows. Plain data; an empty one shows the background.
 struct Picture {
-    Camera camera;
-    Light light;
-    std::vector<Surface> surfaces;
-    std::vector<Wires> wires;
-    std::vector<Ball> balls;
-    std::vector<Ground> grounds;
+    Camera camera = {};
+    Light light = {};
+    std::vector<Surface> surfaces = {};
+    std::vector<Wires> wires = {};
+    std::vector<Ball> balls = {};
+    std::vector<Ground> grounds = {};
 };
 
 }  // namespace palpate

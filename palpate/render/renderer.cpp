@@ -244,11 +244,11 @@ void Renderer::Parts::draw_wires(const Wires& some, const View& seen, const Exte
 
     const auto lines = static_cast<GLsizei>(some.lines.size());
     wires.set("near", 1.0f);
-    wires.set("far", 0.15f);
+    wires.set("far", 0.1f);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lines);
 
-    wires.set("near", 0.4f);
-    wires.set("far", -0.3f);
+    wires.set("near", 0.35f);
+    wires.set("far", -0.9f);
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_FALSE);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lines);

@@ -28,12 +28,12 @@ ShadowMap::ShadowMap(int size)
 }
 
 const gl::Program& ShadowMap::begin(const mat4& light) const {
-    const float nothing = 1;
+    const GLfloat far = 1;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size(), size());
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
-    glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &nothing);
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &far);
     program_.use();
     program_.set("to_clip", light);
     return program_;

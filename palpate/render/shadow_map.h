@@ -4,8 +4,7 @@
 
 namespace palpate {
 
-/// How far parallel light gets before something stops it. Shaders read it as a sampler2DShadow, which tells
-/// lit from shadowed; what lies outside of it is lit.
+/// How far parallel light gets before something stops it. What lies outside of the map is lit.
 class ShadowMap {
  public:
     /// `size` pixels wide and high.

@@ -6,8 +6,8 @@ uniform int occluders;
 uniform vec3 occluder_centre[most_occluders];
 uniform vec3 occluder_half[most_occluders];  // half its length along each axis
 
-// The share of the sky that the round things near a place leave to it. Each counts as an ellipsoid: in the space
-// where that is a unit ball, it hides the cosine over the squared distance, but never all.
+// The share of the sky that the round things near a place leave to it. Each counts as an ellipsoid: in the
+// space where that is a unit ball, it hides the cosine over the squared distance, but never all.
 float sky_share(vec3 place, vec3 normal) {
     float share = 1;
     for (int i = 0; i < occluders; ++i) {

@@ -18,8 +18,8 @@ float sky_share(vec3 place, vec3 normal);
 void main() {
     place = centre + size * position;
     upright = normal;
-    // What the surface at rest leaves of the sky, with more contrast than nature's so that grooves read as grooves,
-    // and what the tools leave of that. It is smooth, so that once a vertex is enough.
+    // What the surface at rest leaves of the sky, with more contrast than nature's so that grooves read as
+    // grooves, and what the tools leave of that. It is smooth, so that once a vertex is enough.
     sky = openness * openness * sky_share(place, normal);
     gl_Position = to_clip * vec4(place, 1);
 }

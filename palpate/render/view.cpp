@@ -65,22 +65,22 @@ vec3 unit(vec3 v, vec3 otherwise) {
 View view(const Camera& wanted, float aspect, const Extent& things) {
     const Camera camera = usable(wanted.eye) && usable(wanted.look_at) ? wanted : Camera{};
     const vec3 forward = unit(camera.look_at - camera.eye, vec3(0, 0, -1));
-    const mat3 frame = axes(forward, unit(camera.up, vec3(0, 1, 0)));
+    const vec3 up = unit(camera.up, vec3(0, 1, 0));
     const float angle = glm::radians(camera.angle >= 1 ? std::min(camera.angle, 170.0f) : 1.0f);
     const float distance = std::max(length(camera.look_at - camera.eye), 1e-3f * things.radius);
     const float depth = dot(things.centre - camera.eye, forward);
-    const mat4 to_eye = from(camera.eye, frame);
+    const mat4 to_eye = from(camera.eye, axes(forward, up));
 
     if (camera.orthographic) {
         const float half = distance * std::tan(0.5f * angle);
         mat4 parallel = glm::ortho(-half * aspect, half * aspect, -half, half, depth - things.radius,
                                    depth + things.radius);
-        return {parallel * to_eye, vec4(-forward, 0), frame[1]};
+        return {parallel * to_eye, vec4(-forward, 0), up};
     }
     // With the eye among the things, or past them, some depth must still lie before it.
     const float far = std::max(depth + things.radius, 1e-2f * things.radius);
     const float near = std::max(depth - things.radius, 1e-3f * far);
-    return {glm::perspective(angle, aspect, near, far) * to_eye, vec4(camera.eye, 1), frame[1]};
+    return {glm::perspective(angle, aspect, near, far) * to_eye, vec4(camera.eye, 1), up};
 }
 
 mat4 along(vec3 direction, const Extent& things) {

@@ -26,7 +26,7 @@ Extent extent(const Picture& picture);
 struct View {
     mat4 to_clip;  // from the world to OpenGL's clip space
     vec4 eye;      // (the eye, 1), or (the direction towards the eye, 0) where all sight lines are parallel
-    vec3 up;       // unit
+    vec3 up;       // where the sky is; unit
 };
 
 /// `v` made unit, or `otherwise` where it has no direction: zero or not finite.

@@ -11,4 +11,4 @@ out vec4 colour;
 
 vec3 shown(vec3 light);
 
-void main() { colour = vec4(shown(look), max(mix(far, near, smoothstep(-0.3, 0.6, nearness)), 0)); }
+void main() { colour = vec4(shown(look), max(mix(far, near, smoothstep(-0.7, 0.3, nearness)), 0)); }
