@@ -1,5 +1,6 @@
 #include "palpate/mesh/mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -15,6 +16,14 @@ vec3 unit(vec3 v) {
 float angle(vec3 a, vec3 b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
 
 }  // namespace
+
+std::span<const Named<Units>> names(Units) {
+    static constexpr Named<Units> all[] = {{Units::metres, "m"},
+                                           {Units::centimetres, "cm"},
+                                           {Units::millimetres, "mm"},
+                                           {Units::micrometres, "um"}};
+    return all;
+}
 
 float metres(Units units) {
     switch (units) {
@@ -56,10 +65,17 @@ void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3
     normals.assign(positions.size(), vec3(0));
     for (uvec3 t : triangles) {
         // Sides of length one first: so no product of small lengths gets lost, however small the face.
-        vec3 ab = unit(positions[t.y] - positions[t.x]);
-        vec3 bc = unit(positions[t.z] - positions[t.y]);
-        vec3 ca = unit(positions[t.x] - positions[t.z]);
-        vec3 face = unit(glm::cross(ab, bc));
+        const vec3 sides[] = {positions[t.y] - positions[t.x], positions[t.z] - positions[t.y],
+                              positions[t.x] - positions[t.z]};
+        const vec3 ab = unit(sides[0]), bc = unit(sides[1]), ca = unit(sides[2]);
+        const float lengths[] = {glm::length(sides[0]), glm::length(sides[1]), glm::length(sides[2])};
+        const float longest = std::max({lengths[0], lengths[1], lengths[2]});
+        if (!(longest > 0)) continue;
+        // Twice the area of the face scaled to a longest side of 1: near 0 for a sliver, whose normal is
+        // mostly chance.
+        const float roundness =
+            (lengths[0] / longest) * (lengths[1] / longest) * glm::length(glm::cross(ab, bc));
+        const vec3 face = roundness * unit(glm::cross(ab, bc));
         normals[t.x] += face * angle(ab, -ca);
         normals[t.y] += face * angle(bc, -ab);
         normals[t.z] += face * angle(ca, -bc);

@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/base/names.h"
 #include "palpate/base/vectors.h"
 
 #include <vector>
@@ -15,6 +16,9 @@ struct Mesh {
 /// What a file's numbers mean. Inside Palpate everything is in metres.
 enum class Units { metres, centimetres, millimetres, micrometres };
 
+/// Their names: m, cm, mm, um.
+std::span<const Named<Units>> names(Units);
+
 /// Metres per unit: 0.001 for millimetres.
 float metres(Units units);
 
@@ -23,8 +27,9 @@ Bounds bounds(const Mesh& mesh);
 /// Enclosed volume in m³ (divergence theorem, summed in double); negative if the mesh is inside out.
 double volume(const Mesh& mesh);
 
-/// Fills mesh.normals: at each vertex the mean of its faces' normals, each weighted by the face's angle
-/// there. A vertex without a face that has an area gets (0, 0, 1).
+/// Fills mesh.normals: at each vertex the mean of its faces' normals, each weighted by the face's angle there
+/// and, so that slivers count for little, by the face's area in relation to its longest side. A vertex
+/// without a face that has an area gets (0, 0, 1).
 void compute_normals(Mesh& mesh);
 
 /// The same for moved vertices of the same triangles, into `normals` (resized).

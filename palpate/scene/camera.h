@@ -12,8 +12,8 @@ struct Camera {
 };
 
 struct Light {
-    vec3 direction = vec3(-0.4f, -1.0f, -0.5f);  // in which the light travels; need not be unit
-    vec3 colour = vec3(1);                       // linear; 1 lights a white surface fully
+    vec3 direction = vec3(0.55f, -1.0f, -0.35f);  // in which the light travels; need not be unit
+    vec3 colour = vec3(1);                        // linear; 1 lights a white surface fully
 };
 
 }  // namespace palpate

@@ -6,14 +6,6 @@
 
 namespace palpate {
 
-std::span<const Named<Units>> names(Units) {
-    static constexpr Named<Units> all[] = {{Units::metres, "m"},
-                                           {Units::centimetres, "cm"},
-                                           {Units::millimetres, "mm"},
-                                           {Units::micrometres, "um"}};
-    return all;
-}
-
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> places{folder};
     if (const char* data = std::getenv("PALPATE_DATA")) places.push_back(data);

@@ -102,7 +102,4 @@ const std::vector<ShippedScene>& shipped_scenes();
 /// the variable PALPATE_DATA names, or where Debian's mricron-data puts its templates. Throws Error.
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder);
 
-/// The names of mesh/mesh.h's units: m, cm, mm, um.
-std::span<const Named<Units>> names(Units);
-
 }  // namespace palpate
