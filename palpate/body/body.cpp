@@ -35,6 +35,19 @@ double mass(const Body& body) {
     return sum;
 }
 
+std::size_t inverted_cells(const Body& body, std::span<const vec3> positions) {
+    std::size_t inverted = 0;
+    for (const auto& nodes : body.cells) {
+        // The mean edges along the three axes span a box of the cell's volume, nearly.
+        vec3 edges[3] = {vec3(0), vec3(0), vec3(0)};
+        for (int corner = 0; corner < 8; ++corner)
+            for (int axis = 0; axis < 3; ++axis)
+                edges[axis] += (corner >> axis & 1 ? 1.0f : -1.0f) * positions[nodes[corner]];
+        inverted += !(glm::dot(glm::cross(edges[0], edges[1]), edges[2]) > 0);
+    }
+    return inverted;
+}
+
 Energy energy(const Body& body, const State& state) {
     Energy sum;
     const std::vector<int> ends = neighbours(body);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,10 @@ struct State {
     std::vector<dvec3> positions;   // m
     std::vector<dvec3> velocities;  // m/s, at the time of the positions
 };
+
+/// How many cells lie inside out: their corners enclose no volume, or a negative one. A lattice that is
+/// pressed together too hard gets stuck like this; it takes a finer lattice or a wider tip to avoid it.
+std::size_t inverted_cells(const Body& body, std::span<const vec3> positions);
 
 struct Energy {
     double kinetic = 0;  // J

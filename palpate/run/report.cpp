@@ -47,7 +47,8 @@ Json to_json(const Report::Body& body) {
             {"step_s", body.step},
             {"kinetic_energy_j", body.kinetic_energy},
             {"elastic_energy_j", body.elastic_energy},
-            {"largest_speed_m_s", body.largest_speed}};
+            {"largest_speed_m_s", body.largest_speed},
+            {"inverted_cells", body.inverted_cells}};
 }
 
 Json to_json(const Report::Tool& tool) {

@@ -244,6 +244,8 @@ class Play {
         body.steps += stats.steps;
         if (body.step == 0 || stats.step < body.step) body.step = stats.step;
         body.largest_speed = std::max(body.largest_speed, stats.largest_speed);
+        body.inverted_cells =
+            std::max(body.inverted_cells, inverted_cells(models_[m].body, solvers_[m]->nodes().positions));
         return true;
     }
 
@@ -321,6 +323,12 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         if (progress) progress("running " + scene.name, report.simulated / duration);
     }
     if (show) show->finish();
+
+    for (const Report::Body& body : report.bodies)
+        if (body.inverted_cells > 0)
+            report.notes.push_back(fmt::format(
+                "body {}: up to {} of {} cells were inside out; press less hard, or use more nodes",
+                body.name, body.inverted_cells, body.cells));
 
     const std::vector<State> states = play.states();
     for (std::size_t m = 0; m < states.size(); ++m) {
