@@ -35,6 +35,7 @@ void import_file(Arguments& arguments) {
     if (arguments.rotate.size() == 3)
         recipe.rotate = vec3(arguments.rotate[0], arguments.rotate[1], arguments.rotate[2]);
 
+    check_mesh_name(arguments.out);
     const CleanSurface surface = make_surface(recipe, {}, terminal_progress());
     write_mesh(surface.mesh, arguments.out);
     end_progress();
@@ -61,6 +62,8 @@ void add_import(CLI::App& app) {
         ->check(CLI::NonNegativeNumber);
     command->add_option("--units", arguments->units,
                         "of the file: m, cm, mm, um [mm for a volume, m for a mesh]");
-    command->add_option("--rotate", arguments->rotate, "degrees about x, y, z")->expected(3);
+    command->add_option("--rotate", arguments->rotate, "degrees about x, y, z")
+        ->expected(3)
+        ->check(CLI::Range(-360.0, 360.0));
     command->callback([arguments] { import_file(*arguments); });
 }

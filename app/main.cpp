@@ -36,5 +36,8 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         return complain(error.what());
     }
+    // Also what is still on its way to a full disk was asked for.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        return complain("cannot write the output; make room on the disk");
     return 0;
 }

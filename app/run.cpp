@@ -75,7 +75,9 @@ void run_scene(Arguments& arguments) {
     print_summary(report);
     if (report.diverged)
         throw Error(fmt::format("the motion blew up after {:.3f} s", report.simulated), arguments.scene,
-                    "use step = \"auto\"; what was good until then is kept");
+                    scene.simulation.step > 0
+                        ? "use step = \"auto\"; what was good until then is kept"
+                        : "use a stiffer body, or press it less hard; what was good is kept");
 }
 
 }  // namespace

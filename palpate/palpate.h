@@ -22,6 +22,7 @@
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/mesh/solid.h"
+#include "palpate/mesh/triangle.h"
 #include "palpate/mesh/volume.h"
 #include "palpate/mesh/write.h"
 #include "palpate/render/renderer.h"

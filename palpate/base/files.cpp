@@ -44,18 +44,44 @@ std::string read_text(const std::filesystem::path& path) {
     return text;
 }
 
-void write_file(const std::filesystem::path& path, const std::function<void(std::FILE*)>& write) {
-    // Beside the final name, because a rename across file systems would be a copy.
-    Temporary temporary{path.string() + ".part" + std::to_string(getpid())};
+namespace {
+
+// True if everything written has left for the disk; a device or a pipe has none to wait for.
+bool flushed(std::FILE* file) {
+    return !std::ferror(file) && std::fflush(file) == 0 && (fsync(fileno(file)) == 0 || errno == EINVAL);
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& name, const std::function<void(std::FILE*)>& write) {
+    std::filesystem::path path = name;
+    std::error_code error, ignored;
+    // A link stays a link: what it leads to is written.
+    if (std::filesystem::is_symlink(name, ignored)) path = std::filesystem::canonical(name, error);
+    if (error) throw Error("a link that leads nowhere", name.string(), "remove it, or name another file");
+    const bool special = std::filesystem::exists(path, error) &&
+                         !std::filesystem::is_regular_file(path, error) &&
+                         !std::filesystem::is_directory(path, ignored);
+    if (special) {  // a pipe or a device is written to, never replaced
+        std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "wb"));
+        if (!file) fail("cannot write", path, "check that it may be written to");
+        write(file.get());
+        if (!flushed(file.get())) fail("cannot write", path, "make room on the disk");
+        return;
+    }
+    Temporary temporary{temporary_beside(path)};
     std::unique_ptr<std::FILE, Close> file(std::fopen(temporary.path.c_str(), "wb"));
     if (!file) fail("cannot write", path, "check that the folder exists and may be written to");
     write(file.get());
-    bool written = !std::ferror(file.get()) && std::fflush(file.get()) == 0 && fsync(fileno(file.get())) == 0;
-    if (!written) fail("cannot write", path, "make room on the disk");
+    if (!flushed(file.get())) fail("cannot write", path, "make room on the disk");
     file.reset();
     if (std::rename(temporary.path.c_str(), path.c_str()) != 0)
         fail("cannot write", path, "check that no folder has this name");
     temporary.keep = true;
+}
+
+std::filesystem::path temporary_beside(const std::filesystem::path& path) {
+    return path.string() + ".part" + std::to_string(getpid());
 }
 
 void write_text(const std::filesystem::path& path, std::string_view text) {

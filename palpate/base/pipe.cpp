@@ -37,17 +37,23 @@ Pipe::Pipe(std::vector<std::string> words) : program_(words.at(0)) {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    complaints_ = std::tmpfile();
+    if (complaints_) posix_spawn_file_actions_adddup2(&actions, fileno(complaints_), STDERR_FILENO);
     int error = posix_spawnp(&process_, arguments[0], &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[0]);
     input_ = ends[1];
     if (error != 0) {
         close(input_);
+        if (complaints_) std::fclose(complaints_);
         throw Error("cannot start the program", program_, "install it, or do without what it writes");
     }
 }
 
-Pipe::~Pipe() { close_and_wait(); }
+Pipe::~Pipe() {
+    close_and_wait();
+    if (complaints_) std::fclose(complaints_);
+}
 
 void Pipe::write(const void* bytes, std::size_t count) {
     // A program that ends early must not kill us: while writing, its signal is held back and then discarded.
@@ -72,12 +78,29 @@ void Pipe::write(const void* bytes, std::size_t count) {
         sigtimedwait(&broken, nullptr, &at_once);
     }
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    if (error != 0) throw Error("the program stopped reading", program_, "see what it printed above");
+    if (error == 0) return;
+    close_and_wait();
+    throw Error("the program stopped reading" + complaint(), program_,
+                "see to that, or do without what it writes");
 }
 
 void Pipe::finish() {
     close_and_wait();
-    if (status_ != 0) throw Error("the program failed", program_, "see what it printed above");
+    if (status_ != 0)
+        throw Error("the program failed" + complaint(), program_,
+                    "see to that, or do without what it writes");
+}
+
+// The last line that the program wrote to its standard error, in brackets.
+std::string Pipe::complaint() const {
+    if (!complaints_) return {};
+    std::rewind(complaints_);
+    std::string last;
+    char line[1024];
+    while (std::fgets(line, sizeof line, complaints_))
+        if (line[0] != '\n') last = line;
+    while (!last.empty() && (last.back() == '\n' || last.back() == '\r')) last.pop_back();
+    return last.empty() ? last : " (" + last + ")";
 }
 
 void Pipe::close_and_wait() {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,8 @@ namespace palpate {
 /// True if a program of this name is on the PATH.
 bool has_program(const std::string& name);
 
-/// The standard input of another program that runs beside ours. Its output goes nowhere; its complaints go to
-/// our standard error. Move-free: make one where it is used.
+/// The standard input of another program that runs beside ours. Its output goes nowhere; the last line of its
+/// complaints goes into the Error when it fails.
 class Pipe {
  public:
     /// Starts `words[0]` with the other words as its arguments; no shell is involved. Throws Error.
@@ -26,7 +27,9 @@ class Pipe {
 
  private:
     void close_and_wait();
+    std::string complaint() const;
     std::string program_;
+    std::FILE* complaints_ = nullptr;  // the program's standard error
     int input_ = -1;
     int process_ = -1;
     int status_ = 0;

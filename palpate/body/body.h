@@ -33,6 +33,8 @@ struct Body {
     std::string name;
     std::vector<vec3> positions;      // m, at rest
     std::vector<float> inverse_mass;  // 1/kg; 0 pins the node
+    std::vector<float> area;          // m², of the outside that a node stands for; 0 inside the body
+    std::vector<float> cover;  // m, from a node out to the surface that hangs on it; negative if within
     Stencil springs;
     std::vector<std::array<int, 8>> cells;  // filled cells: corner nodes, x fastest, then y, then z
     float spacing = 0;                      // m, of the grid

@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/body/grid.h"
 #include "palpate/body/hull.h"
+#include "palpate/mesh/triangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,7 @@ vec3 direction(vec3 v, vec3 otherwise) {
     return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
 }
 
-// ---- cells
-// ----------------------------------------------------------------------------------------------------
+// ---- cells ----
 
 // Weight of corner k of a cell at the place `at`, and its gradient with respect to the place.
 float weight(int k, vec3 at) {
@@ -47,8 +47,7 @@ void place(const InCell& vertex, std::span<const vec3> nodes, vec3& position, ve
     normal = direction(n.x * glm::cross(dy, dz) + n.y * glm::cross(dz, dx) + n.z * glm::cross(dx, dy), n);
 }
 
-// ---- triangles
-// ------------------------------------------------------------------------------------------------
+// ---- triangles ----
 
 // Three unit vectors at right angles: along the triangle, out of it, and across.
 struct Basis {
@@ -97,37 +96,7 @@ void place(const OnTriangle& vertex, const Nodes& nodes, vec3& position, vec3& n
     normal = direction(expand(vertex.normal, b), b.normal);
 }
 
-// Barycentric weights of the point of triangle pqr nearest to v.
-vec3 nearest_weights(vec3 v, vec3 p, vec3 q, vec3 r) {
-    const vec3 pq = q - p, pr = r - p, pv = v - p;
-    const float a = glm::dot(pq, pq), b = glm::dot(pq, pr), c = glm::dot(pr, pr);
-    const float d = glm::dot(pq, pv), e = glm::dot(pr, pv), area = a * c - b * b;
-    if (area > 0) {
-        const float y = (c * d - b * e) / area, z = (a * e - b * d) / area;
-        if (y >= 0 && z >= 0 && y + z <= 1) return {1 - y - z, y, z};
-    }
-    // Outside: the nearest point of the nearest edge.
-    vec3 best(1, 0, 0);
-    float shortest = std::numeric_limits<float>::max();
-    auto try_edge = [&](vec3 from, vec3 to, int i, int j) {
-        const vec3 edge = to - from;
-        const float t =
-            std::clamp(glm::dot(v - from, edge) / std::max(glm::dot(edge, edge), 1e-30f), 0.0f, 1.0f);
-        const vec3 away = v - (from + t * edge);
-        if (glm::dot(away, away) >= shortest) return;
-        shortest = glm::dot(away, away);
-        best = vec3(0);
-        best[i] = 1 - t;
-        best[j] += t;
-    };
-    try_edge(p, q, 0, 1);
-    try_edge(q, r, 1, 2);
-    try_edge(r, p, 2, 0);
-    return best;
-}
-
-// ---- finding the cell or the triangle
-// -----------------------------------------------------------------------------
+// ---- finding the cell or the triangle ----
 
 // The places at exactly this distance from the centre, counting diagonals as one.
 template <class Visit>

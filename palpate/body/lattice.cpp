@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/body/cells.h"
 #include "palpate/body/grid.h"
+#include "palpate/body/hull.h"
 #include "palpate/mesh/solid.h"
 
 #include <fmt/format.h>
@@ -87,6 +88,14 @@ void weigh(Body& body, const Cells& cells, const Material& material, double volu
     for (std::size_t i = 0; i < body.count(); ++i) body.inverse_mass[i] = float(parts / (total * part[i]));
 }
 
+// How much of the outside each node stands for: a third of each hull triangle at it. Where no cell is filled,
+// all is outside: a square of the spacing each.
+void spread_area(Body& body) {
+    body.area.assign(body.count(), body.cells.empty() ? body.spacing * body.spacing : 0);
+    for (const HullTriangle& triangle : hull(body))
+        for (int node : triangle.nodes) body.area[node] += body.spacing * body.spacing / 6;
+}
+
 // Nodes at the grid's points, the springs between them, and the masses. `volume`: of the solid, m³; 0 if the
 // cells' own is meant.
 Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, const Material& material,
@@ -123,6 +132,8 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, co
         std::array<int, 8>& nodes = body.cells.emplace_back();
         for (int k = 0; k < 8; ++k) nodes[k] = grid[c + corner(k)];
     });
+    spread_area(body);
+    body.cover.assign(body.count(), 0);
     return body;
 }
 
@@ -176,18 +187,27 @@ void mark_inside(const SignedDistance& distance, Sampled& sampled) {
 }
 
 // Marks the points in whose part of their cell the surface lies, by scattering points over each triangle,
-// closer together than the parts are wide.
+// closer together than the parts are wide: in rows across it, from the corner opposite its shortest side.
 void mark_surface(const Mesh& mesh, Sampled& sampled) {
+    auto steps = [&](float length) { return 1 + int(2 * length / sampled.fine); };
     for (uvec3 t : mesh.triangles) {
-        const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-        const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-        const int parts = 1 + int(2 * longest / sampled.fine);
-        for (int i = 0; i <= parts; ++i)
-            for (int j = 0; i + j <= parts; ++j) {
-                const vec3 point = a + (float(i) * (b - a) + float(j) * (c - a)) / float(parts);
+        vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        const float ab = glm::distance(a, b), bc = glm::distance(b, c), ca = glm::distance(c, a);
+        if (ab < bc && ab <= ca)
+            std::swap(a, c);
+        else if (ca < bc)
+            std::swap(a, b);
+        const int rows = steps(std::max(glm::distance(a, b), glm::distance(a, c)));
+        for (int row = 0; row <= rows; ++row) {
+            const float part = float(row) / float(rows);
+            const vec3 from = glm::mix(a, b, part), to = glm::mix(a, c, part);
+            const int points = steps(glm::distance(from, to));
+            for (int i = 0; i <= points; ++i) {
+                const vec3 point = glm::mix(from, to, float(i) / float(points));
                 const ivec3 p((point - sampled.frame.origin) / sampled.fine);
                 sampled.cell_of(p).near |= Sampled::bit_of(p);
             }
+        }
     }
 }
 
@@ -211,7 +231,13 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
     };
     auto assemble_at = [&](float h) {
         const auto [frame, cells] = fill_at(h);
-        return assemble(corners_of(cells), cells, frame.origin, h, settings.material, volume);
+        Body body = assemble(corners_of(cells), cells, frame.origin, h, settings.material, volume);
+        const std::vector<float> depth = distance.sample(frame.origin, h, frame.dims + 1);
+        for (std::size_t i = 0; i < body.count(); ++i) {
+            const ivec3 p = body.springs.at[i];
+            body.cover[i] = -depth[(std::size_t(p.z) * (frame.dims.y + 1) + p.y) * (frame.dims.x + 1) + p.x];
+        }
+        return body;
     };
     if (settings.spacing > 0) return assemble_at(spacing);
 

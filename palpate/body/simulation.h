@@ -35,7 +35,7 @@ struct Simulation {
     bool force = false;                 // accept a step above the bound
     vec3 gravity = vec3(0, -9.81f, 0);  // m/s²
     std::vector<Collider> colliders;
-    float contact = 0;        // N/m, the stiffest spring a press will put on one node (contact_stiffness)
+    float contact = 0;        // Pa/m, of all presses to come (pressure_per_metre), for the stability bound
     double frame = 1.0 / 60;  // s, the longest time that one call of Solver::step is asked for
 };
 

@@ -75,7 +75,7 @@ void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3
         // mostly chance.
         const float roundness =
             (lengths[0] / longest) * (lengths[1] / longest) * glm::length(glm::cross(ab, bc));
-        const vec3 face = roundness * unit(glm::cross(ab, bc));
+        const vec3 face = std::min(4 * roundness, 1.0f) * unit(glm::cross(ab, bc));
         normals[t.x] += face * angle(ab, -ca);
         normals[t.y] += face * angle(bc, -ab);
         normals[t.z] += face * angle(ca, -bc);

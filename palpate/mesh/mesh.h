@@ -27,9 +27,8 @@ Bounds bounds(const Mesh& mesh);
 /// Enclosed volume in m³ (divergence theorem, summed in double); negative if the mesh is inside out.
 double volume(const Mesh& mesh);
 
-/// Fills mesh.normals: at each vertex the mean of its faces' normals, each weighted by the face's angle there
-/// and, so that slivers count for little, by the face's area in relation to its longest side. A vertex
-/// without a face that has an area gets (0, 0, 1).
+/// Fills mesh.normals: at each vertex the mean of its faces' normals, each weighted by the face's angle
+/// there; slivers count for less. A vertex without a face that has an area gets (0, 0, 1).
 void compute_normals(Mesh& mesh);
 
 /// The same for moved vertices of the same triangles, into `normals` (resized).

@@ -1,6 +1,7 @@
 #include "palpate/mesh/solid.h"
 
 #include "palpate/base/error.h"
+#include "palpate/mesh/repair.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
@@ -67,6 +68,12 @@ bool has_inside(const FloatGrid& grid) {
     return false;
 }
 
+// Also true of no mesh at all.
+bool is_open(Mesh mesh) {
+    weld(mesh);
+    return mesh.triangles.empty() || soundness(mesh).open_edges > 0;
+}
+
 }  // namespace
 
 Mesh isosurface(const Volume& volume, float iso) {
@@ -118,7 +125,8 @@ SignedDistance::SignedDistance(const Mesh& mesh, float voxel) {
     openvdb::util::NullInterrupter never;
     auto grid =
         openvdb::tools::meshToLevelSet<FloatGrid>(never, openvdb::math::Transform(), points, triangles, band);
-    if (!has_inside(*grid))
+    // A closed sheet thinner than a voxel has no inside to be seen either, but nothing is wrong with it.
+    if (!has_inside(*grid) && is_open(mesh))
         throw Error("nothing inside at this voxel size", "the mesh", "close its holes or use smaller voxels");
     grid_ = std::make_unique<Grid>(Grid{grid, low, voxel});
 }

@@ -18,8 +18,9 @@ Mesh isosurface(const Volume& volume, float iso);
 /// than a voxel do no harm, and a cavity without a wider way out counts as solid.
 class SignedDistance {
  public:
-    /// `voxel`: the width of its grid, m; the finest detail it sees. Throws Error if the mesh is not closed
-    /// enough to have an inside, or if the grid would need more than 2 GB.
+    /// `voxel`: the width of its grid, m; the finest detail it sees. A closed part thinner than that has no
+    /// negative distances. Throws Error if the mesh is open and has no inside, or if the grid would need more
+    /// than 2 GB.
     SignedDistance(const Mesh& mesh, float voxel);
     ~SignedDistance();
     SignedDistance(SignedDistance&&) noexcept;

@@ -61,12 +61,16 @@ std::string obj(const Mesh& mesh) {
 
 }  // namespace
 
+void check_mesh_name(const std::filesystem::path& path) {
+    const std::string format = ending(path);
+    if (format != ".ply" && format != ".obj")
+        throw Error("cannot write the mesh format \"" + format + "\"", path.string(), "use .ply or .obj");
+}
+
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
     assert(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
-    const std::string format = ending(path);
-    if (format == ".ply") return write_text(path, ply(mesh));
-    if (format == ".obj") return write_text(path, obj(mesh));
-    throw Error("cannot write the mesh format \"" + format + "\"", path.string(), "use .ply or .obj");
+    check_mesh_name(path);
+    write_text(path, ending(path) == ".ply" ? ply(mesh) : obj(mesh));
 }
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "palpate/run/film.h"
 
 #include "palpate/base/error.h"
+#include "palpate/base/files.h"
 
 #include <fmt/format.h>
 
@@ -24,7 +25,7 @@ std::vector<std::string> command(const std::filesystem::path& path, int width, i
                     "-f mp4 -movflags +faststart",
                     width, height, rate));
     std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
-    words.push_back(path.string());
+    words.push_back("file:" + path.string());  // whatever its name looks like
     return words;
 }
 
@@ -32,18 +33,19 @@ std::vector<std::string> command(const std::filesystem::path& path, int width, i
 
 Film::Film(const std::filesystem::path& path, int width, int height, int frames_per_second)
     : path_(path),
-      unfinished_(path.string() + ".part"),
-      ffmpeg_(command(unfinished_, width, height, frames_per_second)) {}
+      unfinished_(temporary_beside(path)),
+      ffmpeg_(std::make_unique<Pipe>(command(unfinished_, width, height, frames_per_second))) {}
 
 Film::~Film() {
+    ffmpeg_.reset();  // ffmpeg must have ended before its file goes
     std::error_code ignored;
     std::filesystem::remove(unfinished_, ignored);
 }
 
-void Film::add(const Image& image) { ffmpeg_.write(image.pixels.data(), image.pixels.size()); }
+void Film::add(const Image& image) { ffmpeg_->write(image.pixels.data(), image.pixels.size()); }
 
 void Film::finish() {
-    ffmpeg_.finish();
+    ffmpeg_->finish();
     std::error_code error;
     std::filesystem::rename(unfinished_, path_, error);
     if (error)

@@ -3,6 +3,7 @@
 #include "palpate/mesh/image.h"
 
 #include <filesystem>
+#include <memory>
 
 namespace palpate {
 
@@ -21,7 +22,7 @@ class Film {
 
  private:
     std::filesystem::path path_, unfinished_;
-    Pipe ffmpeg_;
+    std::unique_ptr<Pipe> ffmpeg_;
 };
 
 }  // namespace palpate

@@ -102,7 +102,7 @@ void write_report(const Report& report, const std::filesystem::path& path) {
                  {"tools", Json::array()}};
     for (const Body& body : report.bodies) json["bodies"].push_back(to_json(body));
     for (const Tool& tool : report.tools) json["tools"].push_back(to_json(tool));
-    write_text(path, json.dump(2) + "\n");
+    write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "palpate/run/run.h"
 
 #include "palpate/base/clock.h"
+#include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/gl/context.h"
 #include "palpate/mesh/write.h"
@@ -23,8 +24,7 @@ namespace {
 constexpr double frame = 1.0 / 60;     // s
 constexpr int frames_per_picture = 2;  // of a film: 30 pictures a second
 
-// ---- pictures
-// -----------------------------------------------------------------------------------------------------
+// ---- pictures ----
 
 // Draws the scene as it moves, into a film and single pictures.
 class Show {
@@ -118,8 +118,7 @@ class Show {
     double next_image_ = 0;
 };
 
-// ---- what is written at the end
-// -----------------------------------------------------------------------------------
+// ---- what is written at the end ----
 
 void write_nodes(const std::vector<Model>& models, const std::vector<State>& states,
                  const std::filesystem::path& path) {
@@ -162,8 +161,7 @@ Report::Body describe(const Model& model) {
     return body;
 }
 
-// ---- the run
-// ------------------------------------------------------------------------------------------------------
+// ---- the run ----
 
 // A scene in motion: a solver and a skin for each body, a tip for each tool.
 class Play {
@@ -174,16 +172,22 @@ class Play {
             Simulation simulation = scene.simulation;
             simulation.frame = frame;
             for (const ToolRecipe& tool : scene.tools)
-                simulation.contact =
-                    std::max(simulation.contact, contact_stiffness(as_press(tool), model.body.spacing));
+                simulation.contact += pressure_per_metre(as_press(tool));
             solvers_.push_back(make_solver(model.body, simulation));
             report.bodies.push_back(describe(model));
+            for (const ToolRecipe& tool : scene.tools)
+                if (tool.radius < 0.7f * model.body.spacing)
+                    report.notes.push_back(
+                        fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
+                                    "between the nodes; use more nodes",
+                                    tool.name, model.body.name));
         }
         for (const ToolRecipe& tool : scene.tools) {
             tips_.emplace_back(tool);
             report.tools.emplace_back().name = tool.name;
         }
         presses_.resize(tips_.size());
+        for (std::size_t m = 0; m < models.size(); ++m) skins_[m].triangles = &models[m].surface.triangles;
         map();
     }
 
@@ -191,22 +195,19 @@ class Play {
     const std::vector<std::unique_ptr<Solver>>& solvers() const { return solvers_; }
     const std::vector<std::optional<Press>>& presses() const { return presses_; }
 
-    double step_length() const {
+    // Steps that the busiest body will take for the frame that starts at `time`.
+    int steps_of_frame(double time) {
+        std::vector<std::size_t> ignored;
+        const std::vector<Press> pressing = presses(time, frame, ignored);
         double shortest = frame;
-        for (const auto& solver : solvers_) shortest = std::min(shortest, solver->longest_step({}));
-        return shortest;
+        for (const auto& solver : solvers_) shortest = std::min(shortest, solver->longest_step(pressing));
+        return steps_within(frame, shortest);
     }
 
     // Simulates and maps `seconds` from `time` on. False if a body diverged, which is then as it was before.
     bool advance(double time, double seconds) {
-        std::vector<Press> pressing;
         std::vector<std::size_t> tool_of;
-        for (std::size_t t = 0; t < tips_.size(); ++t) {
-            presses_[t] = tips_[t].press(time, seconds, skins_);
-            if (!presses_[t]) continue;
-            pressing.push_back(*presses_[t]);
-            tool_of.push_back(t);
-        }
+        const std::vector<Press> pressing = presses(time, seconds, tool_of);
         std::vector<dvec3> impulses(pressing.size(), dvec3(0));
         bool sound = true;
         {
@@ -229,6 +230,18 @@ class Play {
     }
 
  private:
+    // The tips that press in this frame, and which tools they belong to.
+    std::vector<Press> presses(double time, double seconds, std::vector<std::size_t>& tool_of) {
+        std::vector<Press> pressing;
+        for (std::size_t t = 0; t < tips_.size(); ++t) {
+            presses_[t] = tips_[t].press(time, seconds, skins_);
+            if (!presses_[t]) continue;
+            pressing.push_back(*presses_[t]);
+            tool_of.push_back(t);
+        }
+        return pressing;
+    }
+
     static Press as_press(const ToolRecipe& tool) { return {{}, {}, tool.radius, tool.stiffness}; }
 
     bool move(std::size_t m, double seconds, const std::vector<Press>& pressing,
@@ -252,7 +265,7 @@ class Play {
     void map() {
         Timed timed(report_.seconds.map);
         for (std::size_t m = 0; m < models_.size(); ++m)
-            deform(models_[m].skin, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals);
+            deform(models_[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals);
     }
 
     void record(std::size_t t, double time, double force) {
@@ -276,10 +289,15 @@ class Play {
     std::vector<std::optional<Press>> presses_;  // of the last frame, one a tool
 };
 
-void make_folders(const RunSettings& settings) {
+// Says before the work what could not be written after it.
+void check_outputs(const RunSettings& settings) {
     for (const auto* file :
-         {&settings.video, &settings.report, &settings.plot, &settings.nodes, &settings.surface})
+         {&settings.video, &settings.report, &settings.plot, &settings.nodes, &settings.surface}) {
         if (file->has_parent_path()) make_folder(file->parent_path());
+        if (std::error_code error; std::filesystem::is_directory(*file, error))
+            throw Error("a folder where a file is to be written", file->string(), "name a file");
+    }
+    if (!settings.surface.empty()) check_mesh_name(settings.surface);
 }
 
 }  // namespace
@@ -290,7 +308,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     report.scene = scene.name;
     report.backend = name_of(scene.simulation.backend);
     report.integrator = name_of(scene.simulation.integrator);
-    make_folders(settings);
+    check_outputs(settings);
 
     const Models made = build(scene, progress);
     report.notes = made.notes;
@@ -302,17 +320,21 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     }
     report.seconds.build = now() - start;
 
-    const double duration = settings.steps    ? double(*settings.steps) * play.step_length()
-                            : settings.frames ? *settings.frames * frame
-                                              : scene.duration;
+    const double duration = settings.frames ? *settings.frames * frame : scene.duration;
     auto draw = [&] {
         Timed timed(report.seconds.render);
         if (show)
             report.pictures += show->frame_done(report.frames, play.skins(), play.solvers(), play.presses());
     };
     draw();
-    while (report.simulated < duration - 1e-9) {
-        const double span = std::min(frame, duration - report.simulated);
+    long steps_left = settings.steps.value_or(0);
+    while (settings.steps ? steps_left > 0 : report.simulated < duration - 1e-9) {
+        double span = std::min(frame, settings.steps ? frame : duration - report.simulated);
+        if (settings.steps) {
+            const int steps = play.steps_of_frame(report.simulated);
+            if (steps > steps_left) span = frame * double(steps_left) / steps;
+            steps_left -= steps;
+        }
         if (!play.advance(report.simulated, span)) {
             report.diverged = true;
             break;
@@ -320,7 +342,10 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         report.simulated += span;
         ++report.frames;
         draw();
-        if (progress) progress("running " + scene.name, report.simulated / duration);
+        if (progress)
+            progress("running " + scene.name, settings.steps
+                                                  ? 1 - double(steps_left) / double(*settings.steps)
+                                                  : report.simulated / duration);
     }
     if (show) show->finish();
 

@@ -1,26 +1,58 @@
 #include "palpate/run/tip.h"
 
 #include "palpate/base/error.h"
+#include "palpate/mesh/triangle.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace palpate {
 
-std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std::vector<Skin>& skins) {
-    std::optional<float> nearest;
+namespace {
+
+struct Triangle {
+    vec3 a, b, c;
+    float distance(vec3 p) const {
+        const vec3 w = nearest_weights(p, a, b, c);
+        return glm::distance(p, w.x * a + w.y * b + w.z * c);
+    }
+};
+
+// The triangles that a ball on its way can touch: those whose own ball comes near its path, ahead.
+std::vector<Triangle> ahead(vec3 from, vec3 along, float radius, const std::vector<Skin>& skins) {
+    std::vector<Triangle> triangles;
     for (const Skin& skin : skins)
-        for (vec3 v : skin.positions) {
-            const float ahead = glm::dot(v - from, along);
-            const vec3 aside = v - from - ahead * along;
-            const float room = radius * radius - glm::dot(aside, aside);
-            if (room < 0) continue;
-            const float way = ahead - std::sqrt(room);
-            if (!nearest || way < *nearest) nearest = way;
+        for (uvec3 t : *skin.triangles) {
+            const vec3 a = skin.positions[t.x], b = skin.positions[t.y], c = skin.positions[t.z];
+            const vec3 centre = (a + b + c) / 3.0f;
+            const float size =
+                std::max({glm::distance(a, centre), glm::distance(b, centre), glm::distance(c, centre)});
+            const float way = glm::dot(centre - from, along);
+            const float aside = glm::distance(centre, from + way * along);
+            if (way > -size && aside < radius + size) triangles.push_back({a, b, c});
         }
-    return nearest;
+    return triangles;
+}
+
+}  // namespace
+
+std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std::vector<Skin>& skins) {
+    const std::vector<Triangle> triangles = ahead(from, along, radius, skins);
+    if (triangles.empty()) return std::nullopt;
+    float farthest = 0;
+    for (const Triangle& t : triangles) farthest = std::max(farthest, t.distance(from) + radius);
+    // The ball may always go on by its distance to the nearest triangle without passing through any.
+    float way = 0;
+    for (int i = 0; i < 1000 && way <= farthest; ++i) {
+        float room = std::numeric_limits<float>::max();
+        for (const Triangle& t : triangles) room = std::min(room, t.distance(from + way * along) - radius);
+        if (i == 0 && room < 0) return std::nullopt;
+        if (room < 1e-3f * radius) return way;
+        way += room;
+    }
+    return std::nullopt;
 }
 
 std::optional<Press> Tip::press(double time, double frame, const std::vector<Skin>& skins) {
@@ -31,7 +63,8 @@ std::optional<Press> Tip::press(double time, double frame, const std::vector<Ski
             const vec3 along = glm::normalize(recipe_.along);
             const auto way = way_to_touch(*recipe_.from, along, recipe_.radius, skins);
             if (!way)
-                throw Error("the tip meets no surface on its way", "tool " + recipe_.name,
+                throw Error("the tip meets no surface on its way, or starts inside one",
+                            "tool " + recipe_.name,
                             "change its `from` or `along`, so that a body lies ahead");
             origin_ = *recipe_.from + *way * along;
         }

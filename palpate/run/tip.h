@@ -10,6 +10,7 @@ namespace palpate {
 /// A surface as it lies at the moment.
 struct Skin {
     std::vector<vec3> positions, normals;
+    const std::vector<uvec3>* triangles;  // of the surface at rest
 };
 
 /// A tool's tip on its way along a scripted path.
@@ -34,8 +35,8 @@ class Tip {
     std::vector<Skin> untouched_;
 };
 
-/// How far a ball can go from `from` along the unit vector `along` before it touches a vertex; nothing if it
-/// never does.
+/// How far a ball can go from `from` along the unit vector `along` before it touches a surface; nothing if it
+/// never does, or touches one where it starts.
 std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std::vector<Skin>& skins);
 
 }  // namespace palpate

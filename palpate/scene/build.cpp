@@ -20,24 +20,54 @@ void tell(const Progress& progress, const BodyRecipe& recipe, const char* doing,
     if (progress) progress(recipe.name + ": " + doing, fraction);
 }
 
-std::vector<int> pinned_nodes(const Body& body, const Pin& pin, vec3 gravity) {
+// A pin that holds nothing is a note: the body would fall.
+std::vector<int> pinned_nodes(const Body& body, const BodyRecipe& recipe, vec3 gravity,
+                              std::vector<std::string>& notes) {
     std::vector<int> all;
-    auto add = [&](const std::vector<int>& nodes) { all.insert(all.end(), nodes.begin(), nodes.end()); };
+    auto add = [&](const char* which, const std::vector<int>& nodes) {
+        if (nodes.empty()) notes.push_back(fmt::format("body {}: pin.{} holds no node", recipe.name, which));
+        all.insert(all.end(), nodes.begin(), nodes.end());
+    };
+    const Pin& pin = recipe.pin;
     const vec3 down = glm::length(gravity) > 0 ? glm::normalize(gravity) : vec3(0, -1, 0);
-    if (pin.below) add(nodes_below(body, *pin.below, down));
-    if (pin.near) add(nodes_near(body, *pin.near, pin.radius));
+    if (pin.below) add("below", nodes_below(body, *pin.below, down));
+    if (pin.near) add("near", nodes_near(body, *pin.near, pin.radius));
     if (pin.box.size() == 2) {
         Bounds box;
         for (vec3 corner : pin.box) box.include(corner);
-        add(nodes_in(body, box));
+        add("box", nodes_in(body, box));
     }
-    for (int node : pin.nodes) {
+    for (int node : pin.nodes)
         if (node < 0 || node >= int(body.count()))
-            throw Error(fmt::format("pin.nodes names node {} of {}", node, body.count()), "body " + body.name,
-                        "count nodes from 0");
-        all.push_back(node);
-    }
+            throw Error(fmt::format("pin.nodes names node {} of {}", node, body.count()),
+                        "body " + recipe.name, "count nodes from 0");
+    if (!pin.nodes.empty()) add("nodes", pin.nodes);
     return all;
+}
+
+// What the user should know of what came out.
+void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::string>& notes) {
+    auto note = [&](const std::string& what) {
+        notes.push_back(fmt::format("body {}: {}", recipe.name, what));
+    };
+    const Body& body = model.body;
+    if (recipe.dims) {
+        if (body.cells.empty()) note("one node thick, so it has no surface to draw or to hang on it");
+        return;
+    }
+    if (recipe.spacing <= 0 && std::abs(double(body.count()) / recipe.nodes - 1) > 0.05)
+        note(fmt::format("{} nodes instead of {}: the nearest that a spacing gives", body.count(),
+                         recipe.nodes));
+    if (const std::string warning = size_warning(model.surface); !warning.empty()) note(warning);
+    if (const std::size_t open = soundness(model.surface).open_edges; open > 0)
+        note(
+            fmt::format("its surface has {} open edges, so what is inside is a guess; close it first", open));
+    const double filled = double(body.cells.size()) * std::pow(body.spacing, 3) / volume(model.surface);
+    if (!(std::abs(filled - 1) < 0.1))
+        note(fmt::format(
+            "the cells hold {:.2f} times the surface's volume: parts are thinner than a cell, or sealed "
+            "hollows count as full",
+            filled));
 }
 
 Body make_body(const BodyRecipe& recipe, const Mesh& surface, const Progress& progress) {
@@ -55,21 +85,14 @@ Model build_one(const BodyRecipe& recipe, const Scene& scene, std::vector<std::s
     Model model;
     if (!recipe.dims) model.surface = make_surface(recipe, scene.folder, progress).mesh;
     tell(progress, recipe, "filling with a lattice", 0.6);
-    model.body = make_body(recipe, model.surface, {});
+    model.body = make_body(recipe, model.surface, progress);
     model.body.name = recipe.name;
     if (recipe.dims) model.surface = hull_mesh(model.body);
     tell(progress, recipe, "hanging the surface on it", 0.9);
-    model.skin = embed(model.surface, model.body, recipe.mapping);
+    model.embedding = embed(model.surface, model.body, recipe.mapping);
 
-    const std::vector<int> held = pinned_nodes(model.body, recipe.pin, scene.simulation.gravity);
-    pin(model.body, held);
-    if (recipe.pin.near && held.empty())
-        notes.push_back(fmt::format("body {}: pin.near holds no node; widen its radius", recipe.name));
-    if (!recipe.dims && recipe.spacing <= 0 && std::abs(double(model.body.count()) / recipe.nodes - 1) > 0.05)
-        notes.push_back(fmt::format("body {}: {} nodes instead of {}: the nearest that a spacing gives",
-                                    recipe.name, model.body.count(), recipe.nodes));
-    if (const std::string warning = size_warning(model.surface); !warning.empty())
-        notes.push_back(fmt::format("body {}: {}", recipe.name, warning));
+    pin(model.body, pinned_nodes(model.body, recipe, scene.simulation.gravity, notes));
+    add_notes(recipe, model, notes);
     return model;
 }
 
@@ -103,6 +126,13 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
     if (recipe.faces > 0) {
         did(fmt::format("simplified away {} faces", decimate(mesh, std::size_t(recipe.faces))));
         if (recipe.largest) keep_largest(mesh);  // without the crumbs that simplifying may break off
+    }
+    if (mesh.triangles.empty())
+        throw Error("no face is left", recipe.volume.empty() ? recipe.surface : recipe.volume,
+                    "ask for more faces");
+    if (volume(mesh) < 0) {
+        for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+        did("turned it right way out");
     }
     rotate(mesh, recipe.rotate);
     for (vec3& p : mesh.positions) p += recipe.move;

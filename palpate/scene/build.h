@@ -12,7 +12,7 @@ namespace palpate {
 struct Model {
     Body body;
     Mesh surface;
-    Embedding skin;
+    Embedding embedding;
 };
 
 /// What a scene's recipes make, in the recipes' order.

@@ -50,10 +50,10 @@ Path read_path(const std::filesystem::path& file) {
     std::istringstream lines(read_text(file));
     int line = 0;
     for (std::string row; std::getline(lines, row);) {
-        ++line;
+        if (++line == 1 && row.starts_with("\xef\xbb\xbf")) row.erase(0, 3);  // a byte-order mark
         if (row.find_first_not_of(" \t\r,") == std::string::npos) continue;
         const std::vector<double> v = numbers(row);
-        if (v.empty() && path.empty() && line == 1) continue;  // a heading
+        if (line == 1 && row.find_first_of("0123456789") == std::string::npos) continue;  // a heading
         if (v.size() != 4)
             throw Error(fmt::format("line {} is not four numbers", line), file.string(),
                         "write t, x, y, z in s and m");
@@ -61,6 +61,9 @@ Path read_path(const std::filesystem::path& file) {
             throw Error(fmt::format("line {} goes back in time", line), file.string(),
                         "sort the rows by time");
         path.push_back({v[0], vec3(v[1], v[2], v[3])});
+        if (!(glm::length(path.back().position) < 1e6f))
+            throw Error(fmt::format("line {} leads out of the world", line), file.string(),
+                        "keep it within 1000 km");
     }
     if (path.empty()) throw Error("no waypoint", file.string(), "write rows of t, x, y, z in s and m");
     return path;

@@ -222,6 +222,8 @@ Collider read_collider(Reader& read, const Source& source, int line) {
             source.fail(line, "a sphere whose radius is not above zero", "give it one in m");
         collider = sphere;
     });
+    if (read.has("plane") && read.has("sphere"))
+        source.fail(line, "a collider with two shapes", "write one [[collider]] for each");
     if (!collider) source.fail(line, "a collider without a shape", "give it a plane or a sphere");
     return *collider;
 }
@@ -239,6 +241,8 @@ Path read_path_value(const Reader& read, const toml::node& node, const Source& s
         if (!path.empty() && row[0] <= path.back().time)
             source.fail(line_of(node), "a path goes back in time", "sort its rows by their first number");
         path.push_back({row[0], vec3(row[1], row[2], row[3])});
+        if (!(glm::length(path.back().position) < 1e6f))
+            source.fail(line_of(node), "a path leads out of the world", "keep it within 1000 km");
     }
     return path;
 }
@@ -341,6 +345,11 @@ void check(const BodyRecipe& body, const Source& source) {
                 "dims is not at least 1 along each axis and at most 10 million nodes", "change it");
         require(body.spacing > 0, "dims without spacing", "say how far apart the nodes are, in m");
     }
+    require(
+        !body.dims || (!body.iso && !body.units && !body.smooth && body.faces == 0 && body.rotate == vec3(0)),
+        "dims beside iso, units, smooth, faces or rotate, which mean nothing there", "remove them");
+    require(body.volume.empty() == !body.iso, "iso without a volume", "remove it");
+    require(body.pin.near || body.pin.radius == 0, "pin.radius without pin.near", "say around which point");
     require(body.pin.box.empty() || body.pin.box.size() == 2, "pin.box is not two corners",
             "write [[…], […]]");
     if (body.pin.below)
@@ -360,18 +369,28 @@ void check(const ToolRecipe& tool, const Source& source) {
     require(!tool.from || glm::length(tool.along) > 0, "along is zero", "give it a direction");
 }
 
+// Names become parts of file names and cells of tables.
+void check_name(const std::string& name, int line, const Source& source) {
+    for (unsigned char c : name)
+        if (c < ' ' || std::string_view("/\\,\"").find(char(c)) != std::string_view::npos)
+            source.fail(line, "a name with a slash, a comma, a quote or an unprintable letter",
+                        "choose another");
+}
+
 void check(Scene& scene, const Source& source) {
     if (scene.bodies.empty()) source.fail(0, "no body", "add a [[body]]");
     std::set<std::string> names;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         BodyRecipe& body = scene.bodies[i];
         if (body.name.empty()) body.name = fmt::format("body{}", i + 1);
+        check_name(body.name, body.line, source);
         if (!names.insert(body.name).second)
             source.fail(body.line, "a second body named " + body.name, "give each its own name");
         check(body, source);
     }
     for (std::size_t i = 0; i < scene.tools.size(); ++i) {
         if (scene.tools[i].name.empty()) scene.tools[i].name = fmt::format("tool{}", i + 1);
+        check_name(scene.tools[i].name, scene.tools[i].line, source);
         check(scene.tools[i], source);
     }
     if (scene.tools.size() > 8) source.fail(0, "more than 8 tools", "use fewer");
@@ -469,7 +488,7 @@ Scene read_scene(const std::string& file_or_name, std::span<const Change> change
     for (const ShippedScene& shipped : shipped_scenes())
         if (shipped.name == file_or_name)
             return parse_scene(shipped.text, shipped.name, std::filesystem::current_path(), changes);
-    if (!std::filesystem::exists(file_or_name)) {
+    if (std::error_code error; !std::filesystem::exists(file_or_name, error)) {
         std::string list;
         for (const ShippedScene& shipped : shipped_scenes())
             list += (list.empty() ? "" : ", ") + shipped.name;

@@ -9,7 +9,8 @@
 //   pass               the Pass: what all nodes share
 //   toward(p, l)       from p to this node's neighbour along link l, m
 //   share(l)           how much of link l there is: 0 none, 1 all
-// The last two, and loading and storing nodes, are all that a backend writes itself.
+//   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
+// The last four, and loading and storing nodes, are all that a backend writes itself.
 
 struct Node {
     Real3 position;      // m
@@ -44,13 +45,13 @@ FN Pull springs(Real3 position) {
     return sum;
 }
 
-// A round tip pushes a node inside it straight out of its centre, in proportion to the depth.
+// A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
 FN Real3 tip_force(Real3 position, int i) {
     Real3 away = position - Real3(pass.tip[i].x, pass.tip[i].y, pass.tip[i].z);
     Real square = squared(away);
     Real inverse = inversesqrt(square);
-    Real depth = max(Real(pass.tip[i].w) - square * inverse, Real(0.0f));
-    return (Real(pass.tip_push[i].x) * depth * inverse) * away;
+    Real depth = max(Real(pass.tip[i].w) + cover() - square * inverse, Real(0.0f));
+    return (Real(pass.tip_push[i].x) * area() * depth * inverse) * away;
 }
 
 FN Real3 acceleration(Node node) {

@@ -19,7 +19,7 @@ struct Pass {
     int   spheres;
     int   spare;
     vec4  tip[8];      // centre, radius
-    vec4  tip_push[8]; // x: stiffness against one node, N/m
+    vec4  tip_push[8]; // x: pressure for each metre of depth, Pa/m
     vec4  plane[8];    // unit normal, offset
     vec4  sphere[8];   // centre, radius
     Spring spring[32];

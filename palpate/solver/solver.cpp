@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -39,6 +40,10 @@ void check_colliders(const Simulation& simulation) {
 }
 
 }  // namespace
+
+int steps_within(double seconds, double longest) {
+    return std::max(1, int(std::ceil(seconds / longest - 1e-6)));  // a hair of rounding is not worth a step
+}
 
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation) {
     const double frequency = highest_frequency(body);

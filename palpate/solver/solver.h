@@ -20,6 +20,9 @@ struct Stats {
         reactions;  // N s, one a press: the impulse that the body gave to the tip, and its opposite got
 };
 
+/// How many equal steps, none longer than `longest`, fill a time; at least one.
+int steps_within(double seconds, double longest);
+
 /// Owns a body's moving state on one backend and moves it. A step never throws.
 class Solver {
  public:

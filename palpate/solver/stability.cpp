@@ -62,9 +62,10 @@ double highest_frequency(const Body& body) {
 }
 
 double pressed_frequency(const Body& body, double frequency, float contact) {
-    float lightest = 0;
-    for (float inverse : body.inverse_mass) lightest = std::max(lightest, inverse);
-    return std::sqrt(frequency * frequency + double(contact) * lightest);
+    float worst = 0;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        worst = std::max(worst, body.area[i] * body.inverse_mass[i]);
+    return std::sqrt(frequency * frequency + double(contact) * worst);
 }
 
 double longest_step(Integrator integrator, double frequency, double damping) {

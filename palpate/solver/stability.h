@@ -8,8 +8,8 @@ namespace palpate {
 /// by power iteration, so it is at most 1 or 2 % too low.
 double highest_frequency(const Body& body);
 
-/// The same with a press on any node, of `contact` N/m: it stiffens one node in one direction, the lightest
-/// one most.
+/// The same with a press of `contact` (Pa/m, pressure_per_metre) on any node: it stiffens one node in one
+/// direction, at worst the one with the most area for its mass.
 double pressed_frequency(const Body& body, double frequency, float contact);
 
 /// The longest step with which an integrator keeps a motion of this frequency bounded, s: the point where a

@@ -48,6 +48,21 @@ TEST(Files, AFullDiskIsAnErrorWithNothingLeft) {
     EXPECT_EQ(scratch.entries(), 0u);
 }
 
+TEST(Files, LinksAndDevicesStayWhatTheyAre) {
+    Scratch scratch;
+    write_text(scratch / "real", "old");
+    std::filesystem::create_symlink(scratch / "real", scratch / "link");
+    write_text(scratch / "link", "new");
+    EXPECT_TRUE(std::filesystem::is_symlink(scratch / "link"));
+    EXPECT_EQ(read_text(scratch / "real"), "new");
+    std::filesystem::create_symlink("/dev/null", scratch / "nothing");
+    write_text(scratch / "nothing", "x");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    std::filesystem::create_symlink(scratch / "gone", scratch / "dangling");
+    EXPECT_THROW(write_text(scratch / "dangling", "x"), Error);
+    EXPECT_EQ(scratch.entries(), 4u);
+}
+
 TEST(Files, MissingPlacesAreNamed) {
     Scratch scratch;
     for (auto attempt : {+[](const std::filesystem::path& p) { read_text(p); },

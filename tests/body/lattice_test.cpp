@@ -168,6 +168,14 @@ TEST(Lattice, NothingThinVanishes) {
     EXPECT_EQ(reached, body.count());
 }
 
+TEST(Lattice, AThinSheetAloneBecomesOneCellThick) {
+    const Body body =
+        lattice(block(vec3(0), {0.1f, 0.1f, 1e-4f}, 10), {.spacing = 0.01f, .material = tissue});
+    EXPECT_EQ(body.cells.size(), 100u);
+    EXPECT_NEAR(mass(body), 1000 * 1e-6, 1e-8);
+    EXPECT_GT(lattice(block(vec3(0), vec3(0.1f)), {.spacing = 1, .material = tissue}).cells.size(), 0u);
+}
+
 TEST(Lattice, RefusesWhatCannotBeFilled) {
     Mesh flat;
     flat.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

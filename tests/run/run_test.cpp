@@ -81,6 +81,10 @@ TEST(Run, StepsAndFramesAreCounted) {
     EXPECT_EQ(run(scene(), frames).frames, 7);
     steps.steps = 10;
     EXPECT_EQ(run(scene({"simulation.step=0.001"}), steps).bodies[0].steps, 10);
+    for (long count : {100, 301}) {
+        steps.steps = count;
+        EXPECT_EQ(run(scene(), steps).bodies[0].steps, count);
+    }
     frames.frames = 0;
     EXPECT_EQ(run(scene(), frames).bodies[0].steps, 0);
 }
@@ -150,6 +154,25 @@ TEST(Run, AToolThatMeetsNothingIsNamed) {
     }
 }
 
+// The main job, until the finger holds still 10 mm in.
+TEST(Run, TheBrainIsPressed) {
+    if (!std::filesystem::exists("/usr/share/mricron/templates/ch2bet.nii.gz"))
+        GTEST_SKIP() << "mricron-data is not available";
+    RunSettings settings;
+    settings.frames = 205;
+    const Report report = run(read_scene("brain"), settings);
+    EXPECT_FALSE(report.diverged);
+    EXPECT_TRUE(report.notes.empty()) << report.notes[0];
+    EXPECT_EQ(report.bodies[0].inverted_cells, 0u);
+    EXPECT_LE(std::abs(double(report.bodies[0].nodes) / 20'000 - 1), 0.05);
+    EXPECT_LE(std::abs(double(report.bodies[0].vertices) / 70'000 - 1), 0.05);
+    EXPECT_GT(report.tools[0].deepest_indentation, 0.005);
+    EXPECT_LT(report.tools[0].deepest_indentation, 0.0101);
+    EXPECT_GT(report.tools[0].largest_force, 0.2);
+    EXPECT_LT(report.tools[0].largest_force, 2);
+    EXPECT_EQ(report.tools[0].force[110], 0);  // before the tip is there
+}
+
 TEST(Run, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
     RunSettings settings;
     settings.report = "/proc/no/such/report.json";
@@ -158,14 +181,20 @@ TEST(Run, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
 
 TEST(Tip, StopsWhereItTouches) {
     const Mesh ball = ellipsoid(vec3(0.05f), 80);
-    const std::vector<Skin> skins{{ball.positions, ball.normals}};
+    const std::vector<Skin> skins{{ball.positions, ball.normals, &ball.triangles}};
     const auto way = way_to_touch({0, 0, 1}, {0, 0, -1}, 0.01f, skins);
     ASSERT_TRUE(way);
-    EXPECT_NEAR(*way, 1 - 0.06f, 1e-5f);
+    EXPECT_NEAR(*way, 1 - 0.06f, 2e-5f);
     const auto aside =
         way_to_touch({0.03f, 0, 1}, {0, 0, -1}, 0.01f, skins);  // two balls of 0.05 and 0.01 touch
     EXPECT_NEAR(*aside, 1 - std::sqrt(0.06f * 0.06f - 0.03f * 0.03f), 1e-4f);
     EXPECT_FALSE(way_to_touch({0.07f, 0, 1}, {0, 0, -1}, 0.01f, skins));
+    EXPECT_FALSE(way_to_touch({0, 0, -1}, {0, 0, -1}, 0.01f, skins));     // the ball lies behind
+    EXPECT_FALSE(way_to_touch({0, 0, 0.05f}, {0, 0, -1}, 0.01f, skins));  // it starts in it
+    const Mesh wide = block(vec3(-1), vec3(1, 1, 0), 1);                  // between vertices far apart
+    EXPECT_NEAR(
+        *way_to_touch({0.1f, 0.2f, 1}, {0, 0, -1}, 0.01f, {{wide.positions, wide.normals, &wide.triangles}}),
+        0.99f, 2e-5f);
 }
 
 TEST(Plot, SurvivesOddCurves) {

@@ -122,6 +122,11 @@ TEST(Scene, WrongTypesAndValuesAreNamed) {
     expect_words(refusal(small + "[[tool]]\nkind = \"drill\"\npath = [[0, 0, 0, 0]]\n"), {"drill", "press"});
     expect_words(refusal(small + "[camera]\nlook_at = \"heart\"\n"), {"heart"});
     expect_words(refusal(small + "[[collider]]\n"), {"shape"});
+    expect_words(refusal(small + "[[collider]]\nplane = {}\nsphere = {}\n"), {"two shapes"});
+    expect_words(refusal(small + "rotate = [90, 0, 0]\n"), {"dims"});
+    expect_words(refusal(small + "pin = { radius = 1 }\n"), {"pin.near"});
+    expect_words(refusal(small + "[[tool]]\nname = \"a/b\"\npath = [[0, 0, 0, 0]]\n"), {"slash"});
+    expect_words(refusal(small + "[[tool]]\npath = [[0, 0, 0, 1e300]]\n"), {"world"});
 }
 
 TEST(Scene, ChangesFromTheCommandLine) {
@@ -161,8 +166,12 @@ TEST(Path, FromAFile) {
     EXPECT_EQ(position(path, 1), vec3(0.5f, 0, -0.05f));
     EXPECT_TRUE(within(path, 2));
     EXPECT_FALSE(within(path, 2.01));
+    write_text(scratch / "mark.csv",
+               "\xef\xbb\xbf"
+               "0,1,2,3\n");
+    EXPECT_EQ(read_path(scratch / "mark.csv").size(), 1u);
     for (const char* bad : {"", "t,x,y,z\n", "0,0,0\n", "0,0,0,nan\n", "0,0,0,0\n0,0,0,0\n", "0,0,0,0x\n",
-                            "0,0,0,0\nt,x,y,z"}) {
+                            "0,0.04,0.2,O.04\n1,0,0,0\n", "0,0,0,1e300\n", "0,0,0,0\nt,x,y,z"}) {
         write_text(scratch / "bad.csv", bad);
         EXPECT_THROW(read_path(scratch / "bad.csv"), Error) << bad;
     }
@@ -180,7 +189,7 @@ TEST_P(Shipped, BuildsAsItSays) {
     const Models made = build(scene);
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const BodyRecipe& recipe = scene.bodies[m];
-        const auto& [body, surface, skin] = made.models[m];
+        const auto& [body, surface, embedding] = made.models[m];
         if (!recipe.dims) EXPECT_LE(std::abs(double(body.count()) / recipe.nodes - 1), 0.05);
         EXPECT_GT(surface.triangles.size(), 0u);
         std::size_t pinned = 0;

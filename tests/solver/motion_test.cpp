@@ -224,26 +224,44 @@ TEST_P(Motion, TheReactionOfAPressIsTheMomentumItGives) {
 }
 
 TEST_P(Motion, ATipPressesAsHardAsItsStiffnessSays) {
-    // A tip much wider than the lattice lies flat on all of it: stiffness / (π r²) for each metre and square
-    // metre.
+    // A tip much wider than the block lies flat on its top, whose whole area it meets at nearly one depth.
     Body body = lattice({9, 3, 9}, 0.01f, {.youngs_modulus = 1e5f, .density = 1000, .damping = 50});
-    pin(body,
-        nodes_in(body, {vec3(-1), vec3(1, 0.0101f, 1)}));  // two layers held, so that the top gives little
-    const float radius = 5, depth = 1e-4f;
-    const float k =
-        200 * 3.14159265f * radius * radius / 0.01f;  // 200 N/m on each square centimetre and one node
-    const Press press{{0.04f, 0.02f + radius - depth, 0.04f}, vec3(0), radius, k};
-    EXPECT_NEAR(contact_stiffness(press, 0.01f), 2.0f, 1e-4f);
-    auto solver = make_solver(body, weightless());
-    const Stats stats = solver->step(1e-5, {&press, 1});
+    const float radius = 5, depth = 1e-3f;
+    const Press press{{0.04f, 0.02f + radius - depth, 0.04f}, vec3(0), radius, 1e7f};
+    const double pressure = 1e7 / (3.14159265 * 25);  // Pa/m
+    EXPECT_NEAR(pressure_per_metre(press) / pressure, 1, 1e-6);
+    auto solver = make_reference<double>(body, weightless(1e-6), 0);
+    const Stats stats = solver->step(1e-6, {&press, 1});
     double expected = 0;
-    for (vec3 p : body.positions)
-        expected += 2.0 * std::max(0.0, double(radius) - glm::distance(dvec3(p), dvec3(press.centre)));
-    EXPECT_GT(expected, 0);
-    // (Floats hold a radius of 5 m to half a micrometre; the depth is 100.)
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        const double reach =
+            double(press.radius) - glm::distance(dvec3(body.positions[i]), dvec3(press.centre));
+        expected += pressure * body.area[i] * std::max(0.0, reach);
+    }
     const double duration =
-        GetParam() == Integrator::verlet ? 0.5e-5 : 1e-5;  // Verlet's first kick is half a step
-    EXPECT_LE(std::abs(stats.reactions[0].y / duration / expected - 1), 0.02);
+        GetParam() == Integrator::verlet ? 0.5e-6 : 1e-6;  // Verlet's first kick is half a step
+    EXPECT_LE(std::abs(stats.reactions[0].y / duration / expected - 1), 1e-4);
+    // All of the top is under it: about pressure times area times depth, less where the ball curves away.
+    EXPECT_GT(expected, 0.85 * pressure * 0.08 * 0.08 * depth);
+    EXPECT_LT(expected, 1.3 * pressure * 0.08 * 0.08 * depth);
+}
+
+// The same block, tip and depth with lattices of two finenesses: the held force is a property of the body.
+TEST_P(Motion, WhatATipFeelsDoesNotDependOnTheLattice) {
+    auto held_force = [&](int cells) {
+        const float h = 0.06f / float(cells);
+        Body body = lattice({cells + 1, cells / 2 + 1, cells + 1}, h,
+                            {.youngs_modulus = 8000, .density = 1000, .damping = 30});
+        pin(body, nodes_below(body, 0, {0, -1, 0}));
+        auto solver = make_solver(body, weightless());
+        const Press press{{0.03f, 0.03f + 0.02f - 0.006f, 0.03f}, vec3(0), 0.02f, 400};
+        Stats stats;
+        for (int i = 0; i < 60; ++i) stats = solver->step(1.0 / 60, {&press, 1});
+        return stats.reactions[0].y * 60;
+    };
+    const double coarse = held_force(8), fine = held_force(16);
+    EXPECT_GT(fine, 0.1);
+    EXPECT_LE(std::abs(coarse / fine - 1), 0.1) << coarse << ' ' << fine;
 }
 
 TEST_P(Motion, TheSameRunTwiceGivesTheSameBits) {
@@ -293,8 +311,7 @@ TEST_P(Motion, OddSizesRun) {
     }
 }
 
-// ---- stability
-// ------------------------------------------------------------------------------------------------------
+// ---- stability ----
 
 TEST(Stability, HighestFrequencyInClosedForm) {
     const Body two = pair(50, 0.2f, 0, 0);

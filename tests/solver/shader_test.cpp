@@ -26,7 +26,9 @@ std::string compute_shader() {
         layout(std430, binding = 1) writeonly buffer Next { Stored next[]; };
         int id;
         vec3 toward(vec3 p, int l) { return now[id + pass.spring[l].offset].position.xyz - p; }
-        float share(int l) { return 1.0; })" +
+        float share(int l) { return 1.0; }
+        float area() { return 1.0; }
+        float cover() { return 0.0; })" +
            read_text(folder + "node.inl") + R"(
         void main() {
             id = int(gl_GlobalInvocationID.x);
@@ -43,7 +45,9 @@ std::string feedback_shader() {
         layout(binding = 0) uniform samplerBuffer positions;
         out vec3 next_position, next_velocity;
         vec3 toward(vec3 p, int l) { return texelFetch(positions, gl_VertexID + pass.spring[l].offset).xyz - p; }
-        float share(int l) { return 1.0; })" +
+        float share(int l) { return 1.0; }
+        float area() { return 1.0; }
+        float cover() { return 0.0; })" +
            read_text(folder + "node.inl") + R"(
         void main() {
             Node node = Node(position.xyz, velocity, position.w);

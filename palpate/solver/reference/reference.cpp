@@ -22,9 +22,12 @@ struct ReferenceNode {
     const std::vector<Real3>& positions;
     const int* ends;     // this node's neighbours, one a link; itself where there is none
     const Real* shares;  // 0 to 1, one a link
+    Real outside_area, outside_cover;
 
     Real3 toward(Real3 p, int l) const { return positions[ends[l]] - p; }
     Real share(int l) const { return shares[l]; }
+    Real area() const { return outside_area; }
+    Real cover() const { return outside_cover; }
 
     static Real max(Real a, Real b) { return a > b ? a : b; }
     static Real min(Real a, Real b) { return a < b ? a : b; }
@@ -67,7 +70,7 @@ class Reference final : public Solver {
     Stats step(double seconds, std::span<const Press> presses) override {
         Stats stats;
         stats.reactions.assign(presses.size(), dvec3(0));
-        stats.steps = std::max(1, int(std::ceil(seconds / longest_step(presses) - 1e-6)));
+        stats.steps = steps_within(seconds, longest_step(presses));
         stats.step = stats.steps > 0 ? seconds / stats.steps : 0;
         const Moving before = now_;
         const double lag_before = lag_;
@@ -92,10 +95,10 @@ class Reference final : public Solver {
 
     double longest_step(std::span<const Press> presses) const override {
         if (simulation_.step > 0) return simulation_.step;
-        float contact = simulation_.contact;
+        float contact = 0;
         for (const Press& press : presses)
-            contact = std::max(contact, contact_stiffness(press, body_.spacing));
-        const double frequency = pressed_frequency(body_, frequency_, contact);
+            contact += pressure_per_metre(press);  // they may all meet at one node
+        const double frequency = pressed_frequency(body_, frequency_, std::max(contact, simulation_.contact));
         return step_safety * palpate::longest_step(simulation_.integrator, frequency, body_.damping);
     }
 
@@ -153,7 +156,7 @@ class Reference final : public Solver {
         for (std::size_t i = 0; i < presses.size(); ++i) {
             const Press& press = presses[i];
             pass_.tip[i] = vec4(press.centre + float(time) * press.velocity, press.radius);
-            pass_.tip_push[i] = vec4(contact_stiffness(press, body_.spacing), 0, 0, 0);
+            pass_.tip_push[i] = vec4(pressure_per_metre(press), 0, 0, 0);
         }
     }
 
@@ -166,7 +169,12 @@ class Reference final : public Solver {
     }
 
     At node_at(std::size_t i, const Pass& pass) const {
-        return {pass, now_.positions, &ends_[i * links()], &shares_[i * links()]};
+        return {pass,
+                now_.positions,
+                &ends_[i * links()],
+                &shares_[i * links()],
+                Real(body_.area[i]),
+                Real(body_.cover[i])};
     }
     Node load(std::size_t i) const {
         return {now_.positions[i], now_.velocities[i], Real(body_.inverse_mass[i])};
