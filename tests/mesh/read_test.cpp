@@ -71,10 +71,10 @@ bool same_bytes(const std::vector<vec3>& a, const std::vector<vec3>& b) {
            (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0);
 }
 
-TEST(WriteMesh, ComesBackFloatForFloat) {
+TEST(WriteMesh, PlyComesBackFloatForFloatAndIndexForIndex) {
     Scratch scratch;
-    for (const char* name : {"a.ply", "a.obj", "A.PLY", "b.Obj"})
-        for (unsigned vertices : {3, 10, 257, 5001})
+    for (const char* name : {"a.ply", "A.PLY"})
+        for (unsigned vertices : {3, 10, 257, 5001, 60000})  // the last is more than assimp reads at once
             for (bool normals : {false, true}) {
                 const Mesh mesh = odd_mesh(vertices, normals);
                 write_mesh(mesh, scratch / name);
@@ -83,6 +83,64 @@ TEST(WriteMesh, ComesBackFloatForFloat) {
                 EXPECT_TRUE(same_bytes(back.normals, mesh.normals)) << name;
                 EXPECT_EQ(back.triangles, mesh.triangles) << name;
             }
+}
+
+TEST(WriteMesh, PlyComesBackWhateverItsFirstByte) {
+    Scratch scratch;
+    for (unsigned byte : {0, 9, 10, 13, 32, 255}) {  // assimp skips a line feed after the header
+        Mesh mesh = box(vec3(1), vec3(2));
+        mesh.positions[0].x = std::bit_cast<float>(0x3f800000u + byte);
+        write_mesh(mesh, scratch / "a.ply");
+        EXPECT_TRUE(same_bytes(read_mesh(scratch / "a.ply", Units::metres).positions, mesh.positions))
+            << byte;
+    }
+}
+
+// How many floats apart two are; they have the same sign.
+unsigned apart(float a, float b) {
+    return unsigned(std::abs(std::bit_cast<std::int32_t>(a) - std::bit_cast<std::int32_t>(b)));
+}
+
+// An OBJ file's vertices come back in the order in which its faces use them: so compare the faces' corners.
+void expect_same_corners(const Mesh& back, const Mesh& mesh, const char* name) {
+    ASSERT_EQ(back.triangles.size(), mesh.triangles.size()) << name;
+    ASSERT_EQ(back.normals.empty(), mesh.normals.empty()) << name;
+    auto check = [&](vec3 a, vec3 b) {
+        for (int k = 0; k < 3; ++k) {
+            const bool exact = b[k] == 0 || (std::abs(b[k]) > 1.5e-8f && std::abs(b[k]) < 1e18f);
+            EXPECT_LE(apart(a[k], b[k]), exact ? 0u : 4u) << name << ' ' << b[k];
+        }
+    };
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+        for (int k = 0; k < 3; ++k) {
+            const unsigned from = mesh.triangles[f][k], to = back.triangles[f][k];
+            check(back.positions[to], mesh.positions[from]);
+            if (!mesh.normals.empty()) check(back.normals[to], mesh.normals[from]);
+        }
+}
+
+TEST(WriteMesh, ObjComesBackFloatForFloatCornerForCorner) {
+    Scratch scratch;
+    for (const char* name : {"a.obj", "b.Obj"})
+        for (unsigned vertices : {3, 10, 257, 5001, 60000})
+            for (bool normals : {false, true}) {
+                const Mesh mesh = odd_mesh(vertices, normals);
+                write_mesh(mesh, scratch / name);
+                const Mesh back = read_mesh(scratch / name, Units::metres);
+                EXPECT_EQ(back.positions.size(), mesh.positions.size()) << name;
+                expect_same_corners(back, mesh, name);
+            }
+    // Shared vertices are shared again, and what is in the order of use keeps its indices.
+    Mesh mesh = sphere(vec3(0), 1, 2);
+    compute_normals(mesh);
+    write_mesh(mesh, scratch / "c.obj");
+    const Mesh once = read_mesh(scratch / "c.obj", Units::metres);
+    EXPECT_EQ(once.positions.size(), mesh.positions.size());
+    write_mesh(once, scratch / "c.obj");
+    const Mesh twice = read_mesh(scratch / "c.obj", Units::metres);
+    EXPECT_TRUE(same_bytes(twice.positions, once.positions));
+    EXPECT_TRUE(same_bytes(twice.normals, once.normals));
+    EXPECT_EQ(twice.triangles, once.triangles);
 }
 
 TEST(WriteMesh, RefusesOtherEndingsAndLeavesNothing) {
@@ -144,10 +202,39 @@ TEST(ReadMesh, ObjAsOthersWriteIt) {
     EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}, {4, 3, 2}}));
     EXPECT_TRUE(mesh.normals.empty()) << "not every corner has one";
 
-    // A box with hard edges has three normals a vertex, of which a mesh can keep none.
+    // At a hard edge a vertex has several normals, and comes once for each.
     put(scratch / "b.obj",
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 3//2 2//1 1//1\n");
-    EXPECT_TRUE(read_mesh(scratch / "b.obj", Units::metres).normals.empty());
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 3//2 2//1 1//-2\n");
+    const Mesh hard = read_mesh(scratch / "b.obj", Units::metres);
+    EXPECT_EQ(hard.positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}}));
+    EXPECT_EQ(hard.normals, (std::vector<vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {1, 0, 0}}));
+    EXPECT_EQ(hard.triangles, (std::vector<uvec3>{{0, 1, 2}, {3, 1, 0}}));
+}
+
+TEST(ReadMesh, TakesWhatAssimpAloneWouldMisread) {
+    Scratch scratch;
+    auto read = [&](const char* name, const std::string& text) {
+        put(scratch / name, text);
+        return read_mesh(scratch / name, Units::metres);
+    };
+    // It drops vertices that begin with a point or have five numbers, divides by a fourth, reads 01 as 0 and
+    // 1, 21 digits as 0, and in a longer file drops a last line without an end.
+    const std::string odd = "v .5 -.5 +1.\nv 1 0 0 1 1\nv 0 100000000000000000000 0 0.5\n";
+    const std::vector<vec3> positions = {{0.5f, -0.5f, 1}, {1, 0, 0}, {0, 1e20f, 0}};
+    EXPECT_EQ(read("a.obj", odd + "f 01 +2 3.0").positions, positions);
+    EXPECT_EQ(read("a.obj", "#" + std::string(5000, ' ') + "\n" + odd + "f 1 2 3").positions, positions);
+    // It opens a file that the text names, and leaves out what is between cstype and end.
+    EXPECT_EQ(read("a.obj", "mtllib /dev/stdin\ncstype x\n" + odd + "f 1 2 3\nend\n").positions, positions);
+
+    // It wants a row a line, knows no sign in front of an index, and takes a comment for an element.
+    const Mesh ply = read("a.ply",
+                          "ply\ncomment element vertex 1000000000\nformat ascii 1.0\ncomment face 9\n"
+                          "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                          "element face 1\nproperty list uchar float texcoord\n"
+                          "property list uchar int vertex_index\nend_header\n"
+                          "\n.5 -.5 +1 1\n0 0 0 100000000000000000000\n\n0 6 1 2 3 4 5 6 +3 +0 1.0 2e0");
+    EXPECT_EQ(ply.positions, positions);
+    EXPECT_EQ(ply.triangles, (std::vector<uvec3>{{0, 1, 2}}));
 }
 
 std::string ply_header(const std::string& format, const std::string& vertices, const std::string& faces) {
@@ -170,6 +257,34 @@ TEST(ReadMesh, RefusesClaimsThatTheFileCannotHold) {
     EXPECT_HAS(mesh_error(scratch / "a.ply", ply_header("ascii", "-3", "1") + three), "count");
     EXPECT_HAS(mesh_error(scratch / "a.ply", ply_header("ascii", "3", "1") + three + "200 0 1 2\n"),
                "truncated");
+    // A list's length may be negative, not whole, or more than any memory holds.
+    for (const char* type : {"char", "int", "float", "uint"}) {
+        std::string header = ply_header("ascii", "3", "1");
+        header.replace(header.find("uchar"), 5, type);
+        for (const char* length : {"-1", "3.5", "nan", "1e300", "4294967295", "4294967299"})
+            EXPECT_HAS(mesh_error(scratch / "a.ply", header + three + length + " 0 1 2\n"), "face 1 of 1");
+        header.replace(header.find("ascii"), 5, "binary_little_endian");
+        for (const char* length : {"\xff\xff\xff\xff", "\x7f\x7f\x7f\x7f"})
+            EXPECT_HAS(mesh_error(scratch / "a.ply", header + std::string(36, '0') + length + "1234"),
+                       "face 1 of 1");
+    }
+    // Two elements of one name, of which a reader may make room for the first alone.
+    const std::string two = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    EXPECT_HAS(mesh_error(scratch / "a.ply", "ply\nformat ascii 1.0\n" + two + two +
+                                                 "element face 1\nproperty list uchar int vertex_index\n"
+                                                 "end_header\n" +
+                                                 three + three + face),
+               "one vertex");
+    // A second format, after the properties.
+    std::string again = ply_header("ascii", "3", "1");
+    again.insert(again.find("end_header"), "format binary_little_endian 1.0\n");
+    put(scratch / "a.ply", again + three + face);
+    EXPECT_EQ(read_mesh(scratch / "a.ply", Units::metres).triangles.size(), 1u);
+    // So many properties that only reading the header takes minutes.
+    std::string endless = ply_header("ascii", "3", "1"), properties;
+    for (int i = 0; i < 100000; ++i) properties += "property float a\n";
+    endless.insert(endless.find("end_header"), properties);
+    EXPECT_HAS(mesh_error(scratch / "a.ply", endless + three + face), "header");
     // A million elements of no bytes would pass any check of sizes.
     EXPECT_HAS(
         mesh_error(scratch / "a.ply", "ply\nformat ascii 1.0\nelement void 1000000000000\nend_header\n"),
@@ -243,8 +358,10 @@ void expect_sound_or_error(const std::filesystem::path& path) {
     } catch (const Error&) {}
 }
 
-TEST(ReadMesh, SurvivesDamagedFiles) {
+TEST(ReadMesh, SurvivesDamagedFilesInSilence) {
     Scratch scratch;
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
     Mesh mesh = box(vec3(0), vec3(1));
     compute_normals(mesh);
     std::mt19937 random(3);
@@ -258,6 +375,8 @@ TEST(ReadMesh, SurvivesDamagedFiles) {
             expect_sound_or_error(scratch / name);
         }
     }
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 // --- volumes -----------------------------------------------------------------------------------------------
