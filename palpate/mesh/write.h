@@ -9,7 +9,8 @@ namespace palpate {
 void check_mesh_name(const std::filesystem::path& path);
 
 /// Writes PLY (binary, little-endian) or OBJ, chosen by the name's ending; positions in metres, with normals
-/// where the mesh has them. Reading the file again gives the same floats. Whole or not at all. Throws Error.
+/// where the mesh has them. Reading a PLY again gives the same floats and indices; what an OBJ keeps, read.h
+/// says. Whole or not at all. Throws Error.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 }  // namespace palpate

@@ -195,19 +195,23 @@ class Play {
     const std::vector<std::unique_ptr<Solver>>& solvers() const { return solvers_; }
     const std::vector<std::optional<Press>>& presses() const { return presses_; }
 
-    // Steps that the busiest body will take for the frame that starts at `time`.
-    int steps_of_frame(double time) {
-        std::vector<std::size_t> ignored;
-        const std::vector<Press> pressing = presses(time, frame, ignored);
+    // Steps that the busiest body takes for a frame.
+    int steps_per_frame() const {
         double shortest = frame;
-        for (const auto& solver : solvers_) shortest = std::min(shortest, solver->longest_step(pressing));
+        for (const auto& solver : solvers_) shortest = std::min(shortest, solver->longest_step({}));
         return steps_within(frame, shortest);
     }
 
     // Simulates and maps `seconds` from `time` on. False if a body diverged, which is then as it was before.
     bool advance(double time, double seconds) {
-        std::vector<std::size_t> tool_of;
-        const std::vector<Press> pressing = presses(time, seconds, tool_of);
+        std::vector<Press> pressing;
+        std::vector<std::size_t> tool_of;  // each press
+        for (std::size_t t = 0; t < tips_.size(); ++t) {
+            presses_[t] = tips_[t].press(time, seconds, skins_);
+            if (!presses_[t]) continue;
+            pressing.push_back(*presses_[t]);
+            tool_of.push_back(t);
+        }
         std::vector<dvec3> impulses(pressing.size(), dvec3(0));
         bool sound = true;
         {
@@ -230,18 +234,6 @@ class Play {
     }
 
  private:
-    // The tips that press in this frame, and which tools they belong to.
-    std::vector<Press> presses(double time, double seconds, std::vector<std::size_t>& tool_of) {
-        std::vector<Press> pressing;
-        for (std::size_t t = 0; t < tips_.size(); ++t) {
-            presses_[t] = tips_[t].press(time, seconds, skins_);
-            if (!presses_[t]) continue;
-            pressing.push_back(*presses_[t]);
-            tool_of.push_back(t);
-        }
-        return pressing;
-    }
-
     static Press as_press(const ToolRecipe& tool) { return {{}, {}, tool.radius, tool.stiffness}; }
 
     bool move(std::size_t m, double seconds, const std::vector<Press>& pressing,
@@ -320,21 +312,17 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     }
     report.seconds.build = now() - start;
 
-    const double duration = settings.frames ? *settings.frames * frame : scene.duration;
+    const double duration = settings.steps    ? frame * double(*settings.steps) / play.steps_per_frame()
+                            : settings.frames ? frame * *settings.frames
+                                              : scene.duration;
     auto draw = [&] {
         Timed timed(report.seconds.render);
         if (show)
             report.pictures += show->frame_done(report.frames, play.skins(), play.solvers(), play.presses());
     };
     draw();
-    long steps_left = settings.steps.value_or(0);
-    while (settings.steps ? steps_left > 0 : report.simulated < duration - 1e-9) {
-        double span = std::min(frame, settings.steps ? frame : duration - report.simulated);
-        if (settings.steps) {
-            const int steps = play.steps_of_frame(report.simulated);
-            if (steps > steps_left) span = frame * double(steps_left) / steps;
-            steps_left -= steps;
-        }
+    while (report.simulated < duration - 1e-9) {
+        const double span = std::min(frame, duration - report.simulated);
         if (!play.advance(report.simulated, span)) {
             report.diverged = true;
             break;
@@ -342,10 +330,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         report.simulated += span;
         ++report.frames;
         draw();
-        if (progress)
-            progress("running " + scene.name, settings.steps
-                                                  ? 1 - double(steps_left) / double(*settings.steps)
-                                                  : report.simulated / duration);
+        if (progress) progress("running " + scene.name, report.simulated / duration);
     }
     if (show) show->finish();
 

@@ -71,7 +71,7 @@ class Reference final : public Solver {
         Stats stats;
         stats.reactions.assign(presses.size(), dvec3(0));
         stats.steps = steps_within(seconds, longest_step(presses));
-        stats.step = stats.steps > 0 ? seconds / stats.steps : 0;
+        stats.step = seconds / stats.steps;
         const Moving before = now_;
         const double lag_before = lag_;
         for (int i = 0; i < stats.steps; ++i) {
