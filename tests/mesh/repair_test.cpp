@@ -90,7 +90,7 @@ TEST(DropUnused, KeepsTheOthersInOrder) {
 }
 
 TEST(KeepLargest, KeepsTheMostFaces) {
-    Mesh mesh = join(join(box(vec3(0), vec3(50)), sphere(vec3(100), 1, 3)), box(vec3(-9), vec3(-8)));
+    Mesh mesh = both(both(box(vec3(0), vec3(50)), sphere(vec3(100), 1, 3)), box(vec3(-9), vec3(-8)));
     EXPECT_EQ(soundness(mesh).parts, 3u);
     EXPECT_EQ(keep_largest(mesh), 2u);
     EXPECT_EQ(mesh.triangles, sphere(vec3(0), 1, 3).triangles);

@@ -1,4 +1,5 @@
 #pragma once
+#include "tests/shapes.h"
 #include <palpate/mesh/mesh.h>
 #include <palpate/mesh/volume.h>
 
@@ -42,14 +43,6 @@ inline Mesh sphere(vec3 centre, float radius, int level) {
     }
     for (vec3& p : mesh.positions) p = centre + radius * p;
     return mesh;
-}
-
-/// Both meshes as one.
-inline Mesh join(Mesh a, const Mesh& b) {
-    const unsigned offset = unsigned(a.positions.size());
-    a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
-    for (uvec3 t : b.triangles) a.triangles.push_back(t + offset);
-    return a;
 }
 
 /// The same faces, the other way round.

@@ -143,7 +143,7 @@ TEST(SignedDistance, SmallHolesAndClosedCavitiesDoNotMatter) {
     Mesh leaky = sphere(vec3(0), 1, 5);
     leaky.triangles.pop_back();
     EXPECT_LT(SignedDistance(leaky, 0.1f).sample(vec3(0), 1, ivec3(1))[0], 0);
-    const Mesh hollow = join(sphere(vec3(0), 1, 4), inside_out(sphere(vec3(0), 0.5f, 4)));
+    const Mesh hollow = both(sphere(vec3(0), 1, 4), inside_out(sphere(vec3(0), 0.5f, 4)));
     EXPECT_LT(SignedDistance(hollow, 0.05f).sample(vec3(0), 1, ivec3(1))[0], 0);
 }
 

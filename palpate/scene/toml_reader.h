@@ -1,0 +1,175 @@
+#pragma once
+// Reads TOML into plain structs, with messages that name the file, the line and the nearest known key. It
+// brings in toml++, so only read_scene.cpp includes it.
+#include "palpate/base/error.h"
+#include "palpate/base/names.h"
+#include "palpate/base/vectors.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// How many letters must be changed, added or taken away to turn one word into the other.
+inline int edits(std::string_view a, std::string_view b) {
+    std::vector<int> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        int corner = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const int kept = corner + (a[i] != b[j]);
+            corner = row[j + 1];
+            row[j + 1] = std::min({kept, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+/// Where a value stands, for messages.
+struct Source {
+    std::string file;
+
+    [[noreturn]] void fail(int line, const std::string& what, const std::string& remedy) const {
+        throw Error(what, line > 0 ? fmt::format("{}, line {}", file, line) : file, remedy);
+    }
+};
+
+inline int line_of(const toml::node& node) { return int(node.source().begin.line); }
+
+/// Reads one table into a struct: it is called with each key and where its value goes. Keys that it was never
+/// called with are errors, found by finish().
+class Reader {
+ public:
+    Reader(const toml::table& table, const Source& source, std::string what)
+        : table_(table), source_(source), what_(std::move(what)) {}
+
+    template <class T>
+    void operator()(const char* key, T& value) {
+        known_.insert(key);
+        if (const toml::node* node = table_.get(key)) read(key, *node, value);
+    }
+
+    /// The tables of `[[key]]`, each read by read_one(reader, line).
+    template <class ReadOne>
+    void each(const char* key, ReadOne read_one) {
+        known_.insert(key);
+        const toml::node* node = table_.get(key);
+        if (!node) return;
+        const toml::array* array = node->as_array();
+        if (!array || !array->is_array_of_tables())
+            wrong(key, *node, fmt::format("tables; write [[{}]]", key));
+        for (const toml::node& one : *array) {
+            Reader reader(*one.as_table(), source_, fmt::format("a {}", key));
+            read_one(reader, line_of(one));
+            reader.finish();
+        }
+    }
+
+    /// A table inside this one, read by read_inside(reader) if it is there.
+    template <class ReadInside>
+    void table(const char* key, ReadInside read_inside) {
+        known_.insert(key);
+        const toml::node* node = table_.get(key);
+        if (!node) return;
+        if (!node->is_table()) wrong(key, *node, "a table");
+        Reader reader(*node->as_table(), source_, key);
+        read_inside(reader);
+        reader.finish();
+    }
+
+    bool has(const char* key) const { return table_.contains(key); }
+    const toml::node* get(const char* key) {
+        known_.insert(key);
+        return table_.get(key);
+    }
+
+    [[noreturn]] void wrong(std::string_view key, const toml::node& node, std::string_view wanted) const {
+        source_.fail(line_of(node), fmt::format("\"{}\" is not {}", key, wanted), "correct its value");
+    }
+
+    void finish() const {
+        for (const auto& [key, node] : table_) {
+            if (known_.contains(std::string(key.str()))) continue;
+            const auto nearest = std::min_element(
+                known_.begin(), known_.end(),
+                [&](const auto& a, const auto& b) { return edits(a, key.str()) < edits(b, key.str()); });
+            source_.fail(
+                line_of(node), fmt::format("unknown key \"{}\" of {}", key.str(), what_),
+                nearest == known_.end() ? "remove it" : fmt::format("did you mean \"{}\"?", *nearest));
+        }
+    }
+
+    // ---- one overload for each kind of value ----
+
+    void read(std::string_view key, const toml::node& node, std::string& value) const {
+        const auto text = node.value_exact<std::string>();
+        if (!text) wrong(key, node, "a text in quotes");
+        value = *text;
+    }
+    void read(std::string_view key, const toml::node& node, bool& value) const {
+        const auto truth = node.value_exact<bool>();
+        if (!truth) wrong(key, node, "true or false");
+        value = *truth;
+    }
+    void read(std::string_view key, const toml::node& node, int& value) const {
+        const auto number = node.value_exact<std::int64_t>();
+        if (!number || *number < std::numeric_limits<int>::min() || *number > std::numeric_limits<int>::max())
+            wrong(key, node, "a whole number");
+        value = int(*number);
+    }
+    void read(std::string_view key, const toml::node& node, double& value) const {
+        if (!node.is_number() || !std::isfinite(*node.value<double>())) wrong(key, node, "a number");
+        value = *node.value<double>();
+    }
+    void read(std::string_view key, const toml::node& node, float& value) const {
+        double wide = 0;
+        read(key, node, wide);
+        value = float(wide);
+        if (!std::isfinite(value)) wrong(key, node, "a number of a sensible size");
+    }
+    template <class T>
+    void read(std::string_view key, const toml::node& node, glm::vec<3, T>& value) const {
+        const toml::array* array = node.as_array();
+        if (!array || array->size() != 3) wrong(key, node, "three numbers in brackets");
+        for (int i = 0; i < 3; ++i) read(key, (*array)[std::size_t(i)], value[i]);
+    }
+    template <class T>
+    void read(std::string_view key, const toml::node& node, std::vector<T>& value) const {
+        const toml::array* array = node.as_array();
+        if (!array) wrong(key, node, "a list in brackets");
+        value.clear();
+        for (const toml::node& one : *array) read(key, one, value.emplace_back());
+    }
+    template <class T>
+    void read(std::string_view key, const toml::node& node, std::optional<T>& value) const {
+        read(key, node, value.emplace());
+    }
+    template <class E>
+    requires std::is_enum_v<E>
+    void read(std::string_view key, const toml::node& node, E& value) const {
+        std::string name;
+        read(key, node, name);
+        const auto known = value_of<E>(name);
+        if (!known)
+            source_.fail(line_of(node), fmt::format("\"{}\" is no {}", name, key),
+                         "choose from " + all_names<E>());
+        value = *known;
+    }
+
+ private:
+    const toml::table& table_;
+    const Source& source_;
+    std::string what_;
+    std::set<std::string> known_;
+};
+
+}  // namespace palpate
