@@ -51,14 +51,14 @@ void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::st
         notes.push_back(fmt::format("body {}: {}", recipe.name, what));
     };
     const Body& body = model.body;
-    if (recipe.dims) {
-        if (body.cells.empty()) note("one node thick, so it has no surface to draw or to hang on it");
-        return;
-    }
+    if (recipe.dims && body.cells.empty())
+        note("one node thick, so it has no surface to draw or to hang on it");
+    if (body.cells.empty()) return;
+    if (const std::string warning = size_warning(model.surface); !warning.empty()) note(warning);
+    if (recipe.dims) return;
     if (recipe.spacing <= 0 && std::abs(double(body.count()) / recipe.nodes - 1) > 0.05)
         note(fmt::format("{} nodes instead of {}: the nearest that a spacing gives", body.count(),
                          recipe.nodes));
-    if (const std::string warning = size_warning(model.surface); !warning.empty()) note(warning);
     if (const std::size_t open = soundness(model.surface).open_edges; open > 0)
         note(
             fmt::format("its surface has {} open edges, so what is inside is a guess; close it first", open));

@@ -27,7 +27,7 @@ void check_step(const Body& body, const Simulation& simulation, double frequency
         throw Error(
             fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of {:.3g} s",
                         name_of(simulation.integrator), simulation.frame / step, step, simulation.frame),
-            where, "use a softer material, a larger spacing or a heavier body, or a longer step");
+            where, "use a softer material, a larger spacing or a heavier body, and check its units");
 }
 
 void check_colliders(const Simulation& simulation) {
