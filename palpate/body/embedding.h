@@ -15,8 +15,7 @@ enum class Mapping {
     automatic,     // the best that the body allows: trilinear in a lattice
     trilinear,     // in a cell, by its eight corners; normals by the gradient of the deformation
     constant,      // on a triangle of nodes, in the triangle's own basis (2005, eq. 4 to 7)
-    interpolated,  // on a triangle of nodes, in a basis turned to the nodes' approximate normals (2005, eq.
-                   // 8)
+    interpolated,  // the same, with the basis turned to the nodes' approximate normals (2005, eq. 8)
 };
 
 inline std::span<const Named<Mapping>> names(Mapping) {

@@ -177,7 +177,8 @@ TEST(Command, TroubleWithOutputsIsSaid) {
     EXPECT_EQ(shell(std::string(PALPATE_COMMAND) + " list scenes 2>/dev/null >/dev/full").status, 1);
     expect_one_line(palpate("run box --surface " + (scratch / "out.stl").string()), {"out.stl", ".ply"});
     expect_one_line(palpate("run box --report " + (scratch / ".").string()), {"folder"});
-    std::filesystem::create_symlink("/dev/null", scratch / "null");  // a link, so that no bug can hurt the device
+    std::filesystem::create_symlink("/dev/null",
+                                    scratch / "null");  // a link, so that no bug can hurt the device
     EXPECT_EQ(palpate("run box --frames 1 --report " + (scratch / "null").string()).status, 0);
     EXPECT_TRUE(std::filesystem::is_symlink(scratch / "null"));
 }

@@ -203,7 +203,8 @@ TEST_P(Shipped, BuildsAsItSays) {
 // 10,000 steps of the automatic length: nothing blows up, and what is damped comes to rest.
 TEST_P(Shipped, IsStableAtTheAutomaticStep) {
     const Scene scene = read_scene(GetParam());
-    if (!scene.bodies[0].volume.empty() && !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
+    if (!scene.bodies[0].volume.empty() &&
+        !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
         GTEST_SKIP() << "mricron-data is not available";
     const Models made = build(scene);
     for (const Model& model : made.models)
