@@ -59,7 +59,7 @@ void write_file(const std::filesystem::path& name, const std::function<void(std:
     // A link stays a link: what it leads to is written.
     if (std::filesystem::is_symlink(name, ignored)) path = std::filesystem::canonical(name, error);
     if (error) throw Error("a link that leads nowhere", name.string(), "remove it, or name another file");
-    const bool special = std::filesystem::exists(path, error) &&
+    const bool special = std::filesystem::exists(path, ignored) &&
                          !std::filesystem::is_regular_file(path, error) &&
                          !std::filesystem::is_directory(path, ignored);
     if (special) {  // a pipe or a device is written to, never replaced

@@ -19,21 +19,21 @@ constexpr int middle = 13;  // the cell itself in its block
 constexpr ivec3 place(int bit) { return {bit % 3 - 1, bit / 3 % 3 - 1, bit / 9 - 1}; }
 constexpr ivec3 point(int bit) { return {bit % 4, bit / 4 % 4, bit / 16}; }
 
-// For each thing, the others next to it by faces, edges and corners.
-template <std::size_t count>
-std::array<Set, count> neighbour_table(ivec3 (*at)(int)) {
-    std::array<Set, count> table{};
-    for (int a = 0; a < int(count); ++a)
-        for (int b = 0; b < int(count); ++b) {
-            const ivec3 d = glm::abs(at(a) - at(b));
+// For each point, the others next to it by faces, edges and corners.
+std::array<Set, 64> points_next_to_points() {
+    std::array<Set, 64> table{};
+    for (int a = 0; a < 64; ++a)
+        for (int b = 0; b < 64; ++b) {
+            const ivec3 d = glm::abs(point(a) - point(b));
             if (std::max({d.x, d.y, d.z}) == 1) table[a] |= Set(1) << b;
         }
     return table;
 }
 
-// What of `set` can be reached from its members `from` by steps inside it.
-template <std::size_t count>
-Set reach(Set set, Set from, const std::array<Set, count>& next_to) {
+const std::array<Set, 64> next_to = points_next_to_points();
+
+// The points of `set` that can be reached from its members `from` by steps inside it.
+Set reach(Set set, Set from) {
     Set reached = from & set;
     for (Set edge = reached; edge;) {
         Set more = 0;
@@ -154,9 +154,8 @@ class Filling {
     // Where points of this empty cell go on in a neighbour, but what stands for the two does not hang
     // together, both cells are filled.
     void keep_together(ivec3 c, Parts& parts) {
-        static const std::array<Set, 64> next_points = neighbour_table<64>(point);
         for (Set rest = touched(at(c)); rest && !cells_.at(c);) {
-            const Set group = reach(rest, rest & -rest, next_points);
+            const Set group = reach(rest, rest & -rest);
             rest &= ~group;
             for (int bit = 0; bit < 27; ++bit) {
                 if (!(group & beside[bit])) continue;

@@ -1,5 +1,6 @@
+#include "palpate/mesh/mesh.h"
+
 #include "tests/mesh/shapes.h"
-#include <palpate/mesh/mesh.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,8 @@
+#include "palpate/mesh/repair.h"
+
+#include "palpate/mesh/read.h"
+#include "palpate/mesh/solid.h"
 #include "tests/mesh/shapes.h"
-#include <palpate/mesh/read.h>
-#include <palpate/mesh/repair.h>
-#include <palpate/mesh/solid.h>
 
 #include <gtest/gtest.h>
 

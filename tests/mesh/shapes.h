@@ -1,7 +1,7 @@
 #pragma once
+#include "palpate/mesh/mesh.h"
+#include "palpate/mesh/volume.h"
 #include "tests/shapes.h"
-#include <palpate/mesh/mesh.h>
-#include <palpate/mesh/volume.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
+#include "palpate/mesh/solid.h"
+
+#include "palpate/base/error.h"
+#include "palpate/mesh/repair.h"
 #include "tests/mesh/shapes.h"
-#include <palpate/base/error.h>
-#include <palpate/mesh/repair.h>
-#include <palpate/mesh/solid.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 #include "palpate/solver/reference/reference.h"
 
-#include "palpate/body/embedding.h"
 #include "palpate/solver/stability.h"
 
 #include <algorithm>
