@@ -4,9 +4,13 @@
 
 namespace palpate {
 
+using glm::dmat2;
 using glm::dmat3;
+using glm::dvec2;
 using glm::dvec3;
+using glm::ivec2;
 using glm::ivec3;
+using glm::ivec4;
 using glm::mat3;
 using glm::mat4;
 using glm::uvec2;

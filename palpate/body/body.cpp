@@ -6,26 +6,37 @@
 
 namespace palpate {
 
-std::vector<int> neighbours(const Body& body) {
-    const GridIndex node_at(body.springs.at);
-    std::vector<int> ends;
-    ends.reserve(body.count() * body.springs.links.size());
-    for (ivec3 at : body.springs.at)
-        for (const Link& link : body.springs.links) ends.push_back(node_at.at(at + link.offset));
+Table table(const Body& body) {
+    if (const auto* written = std::get_if<Table>(&body.springs)) return *written;
+    const Stencil& stencil = body.stencil();
+    const GridIndex node_at(stencil.at);
+    Table table{int(stencil.links.size()), {}};
+    table.ties.reserve(body.count() * stencil.links.size());
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (std::size_t l = 0; l < stencil.links.size(); ++l) {
+            const Link& link = stencil.links[l];
+            const int to = node_at.at(stencil.at[i] + link.offset);
+            const float strength =
+                stencil.strength.empty() || to < 0 ? 1 : 0.5f * (stencil.strength[i] + stencil.strength[to]);
+            const float share = 0.25f * float(stencil.quarters(i, l));
+            table.ties.push_back({to, share, strength * link.stiffness, link.rest});
+        }
+    return table;
+}
+
+std::vector<uvec2> spring_ends(const Body& body) {
+    std::vector<uvec2> ends;
+    const Table springs = table(body);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (const Tie& tie : springs.of(i))
+            if (tie.to > int(i) && tie.share > 0 && tie.stiffness > 0) ends.push_back({i, tie.to});
     return ends;
 }
 
 std::vector<ivec3> cell_places(const Body& body) {
     std::vector<ivec3> places;
-    for (const auto& nodes : body.cells) places.push_back(body.springs.at[nodes[0]]);
+    for (const auto& nodes : body.cells) places.push_back(body.stencil().at[nodes[0]]);
     return places;
-}
-
-std::size_t spring_count(const Body& body) {
-    std::size_t ends = 0;
-    for (std::size_t i = 0; i < body.count(); ++i)
-        for (std::size_t l = 0; l < body.springs.links.size(); ++l) ends += body.springs.quarters(i, l) > 0;
-    return ends / 2;
 }
 
 double mass(const Body& body) {
@@ -50,16 +61,14 @@ std::size_t inverted_cells(const Body& body, std::span<const vec3> positions) {
 
 Energy energy(const Body& body, const State& state) {
     Energy sum;
-    const std::vector<int> ends = neighbours(body);
-    const std::vector<Link>& links = body.springs.links;
+    const Table springs = table(body);
     for (std::size_t i = 0; i < body.count(); ++i) {
         const dvec3 v = state.velocities[i];
         if (body.inverse_mass[i] > 0) sum.kinetic += 0.5 * glm::dot(v, v) / body.inverse_mass[i];
-        for (std::size_t l = 0; l < links.size(); ++l) {
-            const int j = ends[i * links.size() + l];
-            if (j < int(i)) continue;  // each spring once; -1 is no spring
-            const double stretch = glm::distance(state.positions[i], state.positions[j]) - links[l].rest;
-            sum.elastic += 0.5 * body.springs.quarters(i, l) / 4.0 * links[l].stiffness * stretch * stretch;
+        for (const Tie& tie : springs.of(i)) {
+            if (tie.to < int(i)) continue;  // each spring once; -1 is no spring
+            const double stretch = glm::distance(state.positions[i], state.positions[tie.to]) - tie.rest;
+            sum.elastic += 0.5 * tie.share * tie.stiffness * stretch * stretch;
         }
     }
     return sum;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace palpate {
@@ -17,40 +18,71 @@ struct Link {
 };
 
 /// Springs implied by a grid (2005, section 3.1): a list of links that all nodes share, and for each node how
-/// much of each link there is, in quarters: 0 none, 4 a whole one; three bits a link, the first link lowest,
-/// so at most 21. A link and its opposite have the same share.
+/// much of each link there is. A link and its opposite have the same share.
 struct Stencil {
-    std::vector<Link> links;
-    std::vector<ivec3> at;              // each node's place in the grid
-    std::vector<std::uint64_t> shares;  // one word a node
+    std::vector<Link> links;  // at most 32
+    std::vector<ivec3> at;    // each node's place in the grid
+    /// One word a node, the first link lowest. Up to 21 links: three bits each, in quarters, from 0 for none
+    /// to 4 for a whole link. More links: one bit each, a whole link or none.
+    std::vector<std::uint64_t> shares;
+    /// Factors on the stiffness, one a node, where parts of the body are harder or softer than the rest; a
+    /// spring takes the mean of its ends'. Empty: 1 everywhere.
+    std::vector<float> strength;
 
-    int quarters(std::size_t node, std::size_t link) const { return int(shares[node] >> 3 * link & 7); }
+    bool in_quarters() const { return links.size() <= 21; }
+    int quarters(std::size_t node, std::size_t link) const {
+        return in_quarters() ? int(shares[node] >> 3 * link & 7) : int(shares[node] >> link & 1) * 4;
+    }
+};
+
+/// A spring as the node at one of its ends sees it.
+struct Tie {
+    int to = -1;          // the node at the other end; -1: there is none
+    float share = 0;      // how much of it there is, 0 to 1
+    float stiffness = 0;  // N/m, of a whole one
+    float rest = 0;       // m
+};
+
+/// Springs written out: as many ties for each node, some of them empty. For bodies without a grid (the
+/// connection buffer of 2012), and for whoever wants to walk over the springs of any body.
+struct Table {
+    int width = 0;          // ties a node
+    std::vector<Tie> ties;  // count × width
+
+    std::span<const Tie> of(std::size_t node) const { return {&ties[node * width], std::size_t(width)}; }
 };
 
 /// Nodes and the springs between them. Plain data; the moving state belongs to a Solver.
-/// Nodes stand in grid order, x fastest, with no gaps: nodes that do not exist take no memory.
+/// In a grid, nodes stand in its order, x fastest, with no gaps: nodes that do not exist take no memory.
 struct Body {
     std::string name;
     std::vector<vec3> positions;      // m, at rest
-    std::vector<float> inverse_mass;  // 1/kg; 0 pins the node
+    std::vector<float> inverse_mass;  // 1/kg; 0: no force moves the node
     std::vector<float> area;          // m², of the outside that a node stands for; 0 inside the body
     std::vector<float> cover;  // m, from a node out to the surface that hangs on it; negative if within
-    Stencil springs;
+    std::variant<Stencil, Table> springs;
+    /// In a sheet, the first so many springs of each node go round it counter-clockwise, so that their cross
+    /// products sum to its normal; 0 in a solid.
+    int fan = 0;
     std::vector<std::array<int, 8>> cells;  // filled cells: corner nodes, x fastest, then y, then z
-    float spacing = 0;                      // m, of the grid
-    float damping = 0;                      // 1/s
+    std::vector<std::array<int, 3>>
+        faces;               // triangles of nodes, where the body is a sheet or a net of springs
+    float spacing = 0;       // m, of the grid; elsewhere the mean length of the springs
+    float damping = 0;       // 1/s, of velocities
+    float link_damping = 0;  // s: each spring resists its stretching with this × stiffness, N s/m
 
     std::size_t count() const { return positions.size(); }
+    const Stencil& stencil() const { return std::get<Stencil>(springs); }  // of a body in a grid
 };
 
-/// The node at the end of each link of each node, count × links; -1 where no node stands.
-std::vector<int> neighbours(const Body& body);
+/// The springs of any body written out; a stencil's links stay in their order.
+Table table(const Body& body);
+
+/// The springs of any body, each once: pairs of nodes.
+std::vector<uvec2> spring_ends(const Body& body);
 
 /// Where each cell is in the grid: the place of its first corner.
 std::vector<ivec3> cell_places(const Body& body);
-
-/// Springs that exist, each counted once.
-std::size_t spring_count(const Body& body);
 
 /// Mass of the free nodes, kg.
 double mass(const Body& body);
@@ -58,7 +90,8 @@ double mass(const Body& body);
 /// A body's moving state, in double so that a float state and a double one are both kept exactly.
 struct State {
     std::vector<dvec3> positions;   // m
-    std::vector<dvec3> velocities;  // m/s, at the time of the positions
+    std::vector<dvec3> velocities;  // m/s
+    double lag = 0;  // s, how far the velocities are behind the positions (half a step in Verlet)
 };
 
 /// How many cells lie inside out: their corners enclose no volume, or a negative one. A lattice that is
@@ -69,6 +102,7 @@ struct Energy {
     double kinetic = 0;  // J
     double elastic = 0;  // J, in the springs
 };
+/// `state`: with velocities at the time of the positions.
 Energy energy(const Body& body, const State& state);
 
 }  // namespace palpate

@@ -114,7 +114,7 @@ class CellFinder {
     explicit CellFinder(const Body& body)
         : body_(body),
           cells_(cell_places(body)),
-          origin_(body.positions[0] - body.spacing * vec3(body.springs.at[0])) {}
+          origin_(body.positions[0] - body.spacing * vec3(body.stencil().at[0])) {}
 
     int at(ivec3 place) const { return cells_.at(place); }
 
@@ -257,14 +257,18 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
 }
 
 std::vector<vec3> approximate_normals(const Body& body, std::span<const vec3> positions) {
-    const std::vector<int> ends = neighbours(body);
-    const std::size_t links = body.springs.links.size();
+    const Table springs = table(body);
     std::vector<vec3> normals(body.count(), vec3(0));
-    for (std::size_t i = 0; i < body.count(); ++i)
-        for (std::size_t l = 0; l < links; ++l)
-            if (const int j = ends[i * links + l]; j >= 0)
-                normals[i] += 0.25f * float(body.springs.quarters(i, l)) *
-                              direction(positions[i] - positions[j], vec3(0));
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        const auto ties = springs.of(i);
+        auto toward = [&](int t) { return ties[t].to < 0 ? vec3(0) : positions[ties[t].to] - positions[i]; };
+        vec3 round(0);
+        for (int t = 0; t < body.fan; ++t) round += glm::cross(toward(t), toward((t + 1) % body.fan));
+        normals[i] = direction(round, vec3(0));
+        if (body.fan == 0)
+            for (int t = 0; t < springs.width; ++t)
+                if (ties[t].to >= 0) normals[i] -= ties[t].share * direction(toward(t), vec3(0));
+    }
     return normals;
 }
 

@@ -19,9 +19,42 @@ constexpr int samples = 4;           // along each edge of a cell, to find how m
 constexpr double most_cells = 30e6;  // in the box around a body
 
 // The 18 neighbours of a node; a link and its opposite stand side by side.
-constexpr ivec3 offsets[18] = {{1, 0, 0},  {-1, 0, 0},  {0, 1, 0},  {0, -1, 0},  {0, 0, 1},  {0, 0, -1},
-                               {1, 1, 0},  {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0},  {1, 0, 1},  {-1, 0, -1},
-                               {1, 0, -1}, {-1, 0, 1},  {0, 1, 1},  {0, -1, -1}, {0, 1, -1}, {0, -1, 1}};
+constexpr ivec3 near_offsets[18] = {{1, 0, 0},  {-1, 0, 0},  {0, 1, 0},  {0, -1, 0},  {0, 0, 1},  {0, 0, -1},
+                                    {1, 1, 0},  {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0},  {1, 0, 1},  {-1, 0, -1},
+                                    {1, 0, -1}, {-1, 0, 1},  {0, 1, 1},  {0, -1, -1}, {0, 1, -1}, {0, -1, 1}};
+// What 2012 adds to them: the diagonals of the cell, and the next but one along each axis.
+constexpr ivec3 far_offsets[14] = {{1, 1, 1},   {-1, -1, -1}, {1, 1, -1},  {-1, -1, 1}, {1, -1, 1},
+                                   {-1, 1, -1}, {-1, 1, 1},   {1, -1, -1}, {2, 0, 0},   {-2, 0, 0},
+                                   {0, 2, 0},   {0, -2, 0},   {0, 0, 2},   {0, 0, -2}};
+
+Link link_to(ivec3 offset, float stiffness, float spacing) {
+    return {offset, stiffness, spacing * glm::length(vec3(offset))};
+}
+
+std::vector<Link> isotropic_links(const Material& material, float spacing) {
+    const float stiffness =
+        material.stiffness > 0 ? material.stiffness : 0.4f * material.youngs_modulus * spacing;
+    std::vector<Link> links;
+    for (ivec3 offset : near_offsets) links.push_back(link_to(offset, stiffness, spacing));
+    return links;
+}
+
+std::vector<Link> links_of_kinds(const SpringKinds& stiffness, float spacing) {
+    std::vector<Link> links;
+    auto add = [&](ivec3 offset) {
+        const ivec3 size = glm::abs(offset);
+        const bool flexion = std::max({size.x, size.y, size.z}) == 2,
+                   structural = size.x + size.y + size.z == 1;
+        links.push_back(link_to(offset,
+                                flexion      ? stiffness.flexion
+                                : structural ? stiffness.structural
+                                             : stiffness.shear,
+                                spacing));
+    };
+    for (ivec3 offset : near_offsets) add(offset);
+    for (ivec3 offset : far_offsets) add(offset);
+    return links;
+}
 
 // Corner k of a cell: x in the lowest bit, then y, then z. Seen from a node, the cell whose corner k it is.
 constexpr ivec3 corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
@@ -75,11 +108,11 @@ bool equal_links(const Material& material) {
 }
 
 // Spreads the mass over the nodes: by how many of the eight cells around each are filled, or evenly.
-void weigh(Body& body, const Cells& cells, const Material& material, double volume) {
+void weigh(Body& body, const Cells& cells, const Material& material, bool equal, double volume) {
     std::vector<double> part(body.count(), 1);
-    if (!equal_links(material))
+    if (!equal)
         for (std::size_t i = 0; i < body.count(); ++i)
-            part[i] = std::max(filled_around(cells, body.springs.at[i]), 1) / 8.0;
+            part[i] = std::max(filled_around(cells, body.stencil().at[i]), 1) / 8.0;
     double parts = 0;
     for (double p : part) parts += p;
     const double total = material.mass > 0 ? material.mass
@@ -96,35 +129,34 @@ void spread_area(Body& body) {
         for (int node : triangle.nodes) body.area[node] += body.spacing * body.spacing / 6;
 }
 
-// Nodes at the grid's points, the springs between them, and the masses. `volume`: of the solid, m³; 0 if the
-// cells' own is meant.
-Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, const Material& material,
-              double volume) {
-    assert((material.youngs_modulus > 0) != (material.stiffness > 0));
+// Nodes at the grid's points, the springs between them, and the masses. `equal`: all links are whole, at the
+// rim too. `volume`: of the solid, m³; 0 if the cells' own is meant.
+Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, std::vector<Link> links,
+              const Material& material, bool equal, double volume) {
     assert((material.density > 0) != (material.mass > 0));
     Body body;
     body.spacing = spacing;
     body.damping = material.damping;
-    const float stiffness =
-        material.stiffness > 0 ? material.stiffness : 0.4f * material.youngs_modulus * spacing;
-    for (ivec3 offset : offsets)
-        body.springs.links.push_back({offset, stiffness, spacing * glm::length(vec3(offset))});
+    body.link_damping = material.link_damping;
+    Stencil& springs = body.springs.emplace<Stencil>();
+    springs.links = std::move(links);
 
     for_each_place(grid.dims, [&](ivec3 p) {
         if (grid[p] < 0) return;
         grid[p] = int(body.count());
         body.positions.push_back(origin + spacing * vec3(p));
-        body.springs.at.push_back(p);
+        springs.at.push_back(p);
     });
     body.inverse_mass.resize(body.count());
-    weigh(body, cells, material, volume);
+    weigh(body, cells, material, equal, volume);
 
-    for (ivec3 p : body.springs.at) {
+    const int bits = springs.in_quarters() ? 3 : 1, whole = springs.in_quarters() ? 4 : 1;
+    for (ivec3 p : springs.at) {
         std::uint64_t shares = 0;
-        for (std::size_t l = 0; l < std::size(offsets); ++l)
-            if (grid.at(p + offsets[l]) >= 0)
-                shares |= std::uint64_t(equal_links(material) ? 4 : quarters(cells, p, offsets[l])) << 3 * l;
-        body.springs.shares.push_back(shares);
+        for (std::size_t l = 0; l < springs.links.size(); ++l)
+            if (const ivec3 offset = springs.links[l].offset; grid.at(p + offset) >= 0)
+                shares |= std::uint64_t(equal ? whole : quarters(cells, p, offset)) << bits * l;
+        springs.shares.push_back(shares);
     }
 
     for_each_place(cells.dims, [&](ivec3 c) {
@@ -214,6 +246,7 @@ void mark_surface(const Mesh& mesh, Sampled& sampled) {
 }  // namespace
 
 Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& progress) {
+    assert((settings.material.youngs_modulus > 0) != (settings.material.stiffness > 0));
     const Bounds box = bounds(mesh);
     const double volume = std::abs(palpate::volume(mesh));
     if (!(volume > 0))
@@ -231,10 +264,11 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
     };
     auto assemble_at = [&](float h) {
         const auto [frame, cells] = fill_at(h);
-        Body body = assemble(corners_of(cells), cells, frame.origin, h, settings.material, volume);
+        Body body = assemble(corners_of(cells), cells, frame.origin, h, isotropic_links(settings.material, h),
+                             settings.material, equal_links(settings.material), volume);
         const std::vector<float> depth = distance.sample(frame.origin, h, frame.dims + 1);
         for (std::size_t i = 0; i < body.count(); ++i) {
-            const ivec3 p = body.springs.at[i];
+            const ivec3 p = body.stencil().at[i];
             body.cover[i] = -depth[(std::size_t(p.z) * (frame.dims.y + 1) + p.y) * (frame.dims.x + 1) + p.x];
         }
         return body;
@@ -257,12 +291,25 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
     return assemble_at(best);
 }
 
-Body lattice(ivec3 dims, float spacing, const Material& material) {
+namespace {
+
+Body plain_box(ivec3 dims, float spacing, std::vector<Link> links, const Material& material, bool equal) {
     Cells cells{glm::max(dims - 1, ivec3(0)), {}};
     cells.filled.assign(std::size_t(cells.dims.x) * cells.dims.y * cells.dims.z, 1);
     GridIndex grid(ivec3(0), dims);
     std::fill(grid.numbers.begin(), grid.numbers.end(), 0);
-    return assemble(std::move(grid), cells, vec3(0), spacing, material, 0);
+    return assemble(std::move(grid), cells, vec3(0), spacing, std::move(links), material, equal, 0);
+}
+
+}  // namespace
+
+Body lattice(ivec3 dims, float spacing, const Material& material) {
+    assert((material.youngs_modulus > 0) != (material.stiffness > 0));
+    return plain_box(dims, spacing, isotropic_links(material, spacing), material, equal_links(material));
+}
+
+Body lattice(ivec3 dims, float spacing, const SpringKinds& stiffness, const Material& material) {
+    return plain_box(dims, spacing, links_of_kinds(stiffness, spacing), material, true);
 }
 
 }  // namespace palpate

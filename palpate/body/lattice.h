@@ -25,4 +25,9 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
 /// solid.
 Body lattice(ivec3 dims, float spacing, const Material& material);
 
+/// The volume of 2012, section 3: such a box with 32 springs a node, structural ones along the axes, shear
+/// ones across the diagonals of faces and of cells, flexion ones to the next but one; all whole, at the rim
+/// too. Of the material its mass and damping are taken.
+Body lattice(ivec3 dims, float spacing, const SpringKinds& stiffness, const Material& material);
+
 }  // namespace palpate

@@ -20,6 +20,13 @@ inline std::span<const Named<Links>> names(Links) {
     return all;
 }
 
+/// How strong the three kinds of springs of 2012, section 3, are, N/m. A zero leaves them out.
+struct SpringKinds {
+    float structural = 0;  // to the next node along an axis: resists stretching
+    float shear = 0;       // to the next node across a diagonal: resists shearing
+    float flexion = 0;     // to the next but one along an axis: resists bending
+};
+
 /// What a body is made of. Give one of the first two and one of the next two; a zero says "not given".
 struct Material {
     float youngs_modulus = 0;  // Pa; brain about 1e3 to 1e4, skin 1e5. Poisson's ratio is always 1/4
@@ -27,6 +34,7 @@ struct Material {
     float density = 0;         // kg/m³; water is 1000
     float mass = 0;            // kg, of the whole body
     float damping = 0;         // 1/s; free motion decays as exp(-damping · t / 2)
+    float link_damping = 0;    // s; each spring resists its stretching with this × its stiffness, N s/m
     Links links = Links::automatic;
 };
 

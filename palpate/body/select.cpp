@@ -45,6 +45,31 @@ std::vector<int> nodes_in(const Body& body, const Bounds& box) {
     });
 }
 
+std::vector<int> nodes_labelled(const Body& body, const Volume& labels, float label) {
+    return nodes_where(body, [&](vec3 p) {
+        const vec3 in_grid = glm::transpose(labels.direction) * (p - labels.origin) / labels.spacing;
+        const ivec3 v(glm::floor(in_grid + 0.5f));
+        const bool inside =
+            glm::all(glm::greaterThanEqual(v, ivec3(0))) && glm::all(glm::lessThan(v, labels.dims));
+        return inside && labels.at(v.x, v.y, v.z) == label;
+    });
+}
+
+void strengthen(Body& body, std::span<const int> nodes, float factor) {
+    if (auto* stencil = std::get_if<Stencil>(&body.springs)) {
+        stencil->strength.resize(body.count(), 1);
+        for (int node : nodes) stencil->strength[node] *= factor;
+        return;
+    }
+    Table& springs = std::get<Table>(body.springs);
+    std::vector<float> factors(body.count(), 1);
+    for (int node : nodes) factors[node] = factor;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (int t = 0; t < springs.width; ++t)
+            if (Tie& tie = springs.ties[i * springs.width + t]; tie.to >= 0)
+                tie.stiffness *= 0.5f * (factors[i] + factors[tie.to]);
+}
+
 void pin(Body& body, std::span<const int> nodes) {
     for (int node : nodes) body.inverse_mass[node] = 0;
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/body/body.h"
+#include "palpate/mesh/volume.h"
 
 #include <span>
 #include <vector>
@@ -17,7 +18,14 @@ std::vector<int> nodes_near(const Body& body, vec3 point, float radius = 0);
 /// The nodes in a box, its faces included.
 std::vector<int> nodes_in(const Body& body, const Bounds& box);
 
-/// Holds these nodes where they are, for ever: their inverse mass becomes 0.
+/// The nodes that lie in voxels of this value: a label volume says what is what. Outside it there are none.
+std::vector<int> nodes_labelled(const Body& body, const Volume& labels, float label);
+
+/// Makes the springs of these nodes `factor` times as stiff as they are; one that leads out of them gets half
+/// of the change. A node must not be named twice.
+void strengthen(Body& body, std::span<const int> nodes, float factor);
+
+/// No force moves these nodes any more: their inverse mass becomes 0.
 void pin(Body& body, std::span<const int> nodes);
 
 }  // namespace palpate

@@ -11,9 +11,13 @@ enum class Backend {
     reference,  // one node after the other on one CPU core: the truth that other backends are held against
 };
 
-enum class Integrator {
-    semi_implicit_euler,  // called "implicit Euler" in the 2012 paper, eq. 7; order 1, symplectic
-    verlet,               // 2012, eq. 6, in its velocity form; order 2, symplectic
+enum class Integrator {   // order, with damping of velocities; docs/integrators.md derives them
+    explicit_euler,       // 1; stable only with damping
+    semi_implicit_euler,  // 1, symplectic; called "implicit Euler" in the 2012 paper
+    verlet,               // 2, symplectic
+    midpoint,             // 2; undamped, it grows slowly at any step
+    verlet_midpoint,      // 2, symplectic: Verlet with the acceleration taken at the midpoint
+    rk4,                  // 4; four passes a step
 };
 
 inline std::span<const Named<Backend>> names(Backend) {
@@ -22,8 +26,12 @@ inline std::span<const Named<Backend>> names(Backend) {
 }
 
 inline std::span<const Named<Integrator>> names(Integrator) {
-    static constexpr Named<Integrator> all[] = {{Integrator::semi_implicit_euler, "semi-implicit-euler"},
-                                                {Integrator::verlet, "verlet"}};
+    static constexpr Named<Integrator> all[] = {{Integrator::explicit_euler, "explicit-euler"},
+                                                {Integrator::semi_implicit_euler, "semi-implicit-euler"},
+                                                {Integrator::verlet, "verlet"},
+                                                {Integrator::midpoint, "midpoint"},
+                                                {Integrator::verlet_midpoint, "verlet-midpoint"},
+                                                {Integrator::rk4, "rk4"}};
     return all;
 }
 
@@ -34,8 +42,11 @@ struct Simulation {
     double step = 0;                    // s; 0 chooses 0.7 of the stability bound
     bool force = false;                 // accept a step above the bound
     vec3 gravity = vec3(0, -9.81f, 0);  // m/s²
-    std::vector<Collider> colliders;
-    float contact = 0;        // Pa/m, of all presses to come (pressure_per_metre), for the stability bound
+    float air = 0;  // kg/m³: how dense the air is that moves, or stands; 1.2, or 0 for none
+    std::vector<Collider> colliders;  // at most 16, with at most 1,000 triangles in all
+    // The strongest to come, for the stability bound:
+    float contact = 0;        // Pa/m, of all presses together (pressure_per_metre)
+    float pull = 0;           // N/m, of all drags together
     double frame = 1.0 / 60;  // s, the longest time that one call of Solver::step is asked for
 };
 

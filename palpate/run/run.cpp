@@ -37,7 +37,7 @@ class Show {
                                            60 / frames_per_picture);
         if (!settings.images.empty()) make_folder(settings.images);
         if (settings.lattice)
-            for (const Model& model : models) springs_.push_back(spring_lines(model.body));
+            for (const Model& model : models) springs_.push_back(spring_ends(model.body));
         camera_ = scene.camera;
         camera_.look_at = looked_at();
     }
@@ -66,17 +66,6 @@ class Show {
     }
 
  private:
-    static std::vector<uvec2> spring_lines(const Body& body) {
-        std::vector<uvec2> lines;
-        const std::vector<int> ends = neighbours(body);
-        const std::size_t links = body.springs.links.size();
-        for (std::size_t i = 0; i < body.count(); ++i)
-            for (std::size_t l = 0; l < links; ++l)
-                if (const int j = ends[i * links + l]; j > int(i) && body.springs.quarters(i, l) > 0)
-                    lines.push_back({i, j});
-        return lines;
-    }
-
     vec3 looked_at() const {
         if (const auto* point = std::get_if<vec3>(&scene_.look_at)) return *point;
         for (const Model& model : models_)
@@ -100,9 +89,9 @@ class Show {
             if (presses[t])
                 picture.balls.push_back({presses[t]->centre, presses[t]->radius, scene_.tools[t].colour});
         for (const Collider& collider : scene_.simulation.colliders)
-            if (const auto* plane = std::get_if<Plane>(&collider))
+            if (const auto* plane = std::get_if<Plane>(&collider.shape))
                 picture.grounds.push_back({plane->normal, plane->offset});
-            else if (const auto* sphere = std::get_if<Sphere>(&collider))
+            else if (const auto* sphere = std::get_if<Sphere>(&collider.shape))
                 picture.balls.push_back({sphere->centre, sphere->radius, vec3(0.5f)});
         return picture;
     }
@@ -151,7 +140,7 @@ Report::Body describe(const Model& model) {
     body.nodes = model.body.count();
     body.pinned =
         std::size_t(std::count(model.body.inverse_mass.begin(), model.body.inverse_mass.end(), 0.0f));
-    body.springs = spring_count(model.body);
+    body.springs = spring_ends(model.body).size();
     body.cells = model.body.cells.size();
     body.vertices = model.surface.positions.size();
     body.faces = model.surface.triangles.size();
@@ -238,7 +227,7 @@ class Play {
 
     bool move(std::size_t m, double seconds, const std::vector<Press>& pressing,
               std::vector<dvec3>& impulses) {
-        const Stats stats = solvers_[m]->step(seconds, pressing);
+        const Stats stats = solvers_[m]->step(seconds, {.presses = pressing});
         if (stats.diverged) {
             report_.notes.push_back(
                 fmt::format("body {} diverged with steps of {:.4g} s", models_[m].body.name, stats.step));

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/body/press.h"
+#include "palpate/body/influences.h"
 #include "palpate/scene/scene.h"
 
 #include <optional>

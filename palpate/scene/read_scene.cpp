@@ -55,7 +55,7 @@ Collider read_collider(Reader& read, const Source& source, int line) {
         if (!(glm::length(plane.normal) > 0))
             source.fail(line, "a plane whose normal is zero", "give it a direction");
         plane.normal = glm::normalize(plane.normal);
-        collider = plane;
+        collider = Collider{plane};
     });
     read.table("sphere", [&](Reader& inside) {
         Sphere sphere;
@@ -63,7 +63,7 @@ Collider read_collider(Reader& read, const Source& source, int line) {
         inside("radius", sphere.radius);
         if (!(sphere.radius > 0))
             source.fail(line, "a sphere whose radius is not above zero", "give it one in m");
-        collider = sphere;
+        collider = Collider{sphere};
     });
     if (read.has("plane") && read.has("sphere"))
         source.fail(line, "a collider with two shapes", "write one [[collider]] for each");

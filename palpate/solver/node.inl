@@ -1,34 +1,54 @@
-// node.inl: the physics of one node, written once for every backend.
+// node.inl: the physics of one node, written once for every backend; what it may not enter is in obstacles.inl.
 //
-// The words are GLSL's; C++ and CUDA bring the same ones (dot, min, max, inversesqrt). In C++ and CUDA this file is
-// included inside the backend's own struct, in GLSL at global scope, and finds there:
+// The words are GLSL's; C++ and CUDA bring the same ones (dot, cross, max, min, inversesqrt). In C++ and CUDA this
+// file is included inside the backend's own struct, in GLSL at global scope, and finds there:
 //   FN, UNROLL         what stands before a function, and before the loop over links
-//   Real, Real3        a number, a vector: of one node, or of as many nodes as a SIMD register holds
+//   Real, Real3, Real4 a number, a vector: of one node, or of as many nodes as a SIMD register holds
 //   select(c, a, b)    a where c holds, b elsewhere
 //   LINKS              how many links a node has
 //   pass               the Pass: what all nodes share
 //   toward(p, l)       from p to this node's neighbour along link l, m
+//   passing(v, l)      from v to that neighbour's velocity, m/s
 //   share(l)           how much of link l there is: 0 none, 1 all
+//   stiffness(l), tension(l)   of a whole link, N/m; stiffness x rest length, N
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
-// The last four, and loading and storing nodes, are all that a backend writes itself.
+//   held(i)            1 where drag i holds this node, else 0
+//   corner(i)          corner i of all polygons, m; distance_at(i, p)   field i at p: uphill, and the distance
+// These, and loading and storing nodes, are all that a backend writes itself.
 
 struct Node {
     Real3 position;      // m
     Real3 velocity;      // m/s
-    Real  inverse_mass;  // 1/kg; 0 pins the node
+    Real  inverse_mass;  // 1/kg; 0: no force moves it, and it goes on at its velocity
 };
+
+FN Real3 xyz(vec4 v) { return Real3(v.x, v.y, v.z); }
 
 // Squared length, never quite zero: two nodes in one place feel no force, not NaN. The tiny number stands innermost,
 // where a fused multiply-add takes it for nothing.
 FN Real squared(Real3 a) { return a.x * a.x + (a.y * a.y + (a.z * a.z + Real(1e-20f))); }
+
+FN Real3 unit(Real3 a) { return inversesqrt(squared(a)) * a; }
 
 // ---- forces ----
 
 // What the springs of a node do to it.
 struct Pull {
     Real3 force;    // N
-    Real3 outward;  // sum of the unit vectors from its neighbours: the approximate normal (2005, eq. 3)
+    Real3 outward;  // the approximate normal: sum of the unit vectors from its neighbours (2005, eq. 3)
 };
+
+// In a sheet, which has no neighbours on either side: the normal of the triangles around the node.
+FN Real3 fan_normal(Real3 position) {
+    Real3 sum = Real3(0.0f, 0.0f, 0.0f);
+    Real3 last = toward(position, pass.fan - 1);
+    for (int l = 0; l < pass.fan; ++l) {
+        Real3 along = toward(position, l);
+        sum += cross(last, along);
+        last = along;
+    }
+    return unit(sum);
+}
 
 // Each spring pulls with stiffness x (length - rest length) towards its neighbour (2005, eq. 1 without the factor 1/2).
 FN Pull springs(Real3 position) {
@@ -38,62 +58,73 @@ FN Pull springs(Real3 position) {
     UNROLL for (int l = 0; l < LINKS; ++l) {
         Real3 along = toward(position, l);
         Real inverse = inversesqrt(squared(along));
-        Real pull = Real(pass.spring[l].stiffness) - Real(pass.spring[l].tension) * inverse;
+        Real pull = stiffness(l) - tension(l) * inverse;
         sum.force += (share(l) * pull) * along;
         sum.outward -= (share(l) * inverse) * along;
     }
+    if (pass.fan > 0) sum.outward = fan_normal(position);
     return sum;
+}
+
+// Each spring resists the speed at which it stretches.
+FN Real3 dashpots(Node node) {
+    Real3 force = Real3(0.0f, 0.0f, 0.0f);
+    UNROLL for (int l = 0; l < LINKS; ++l) {
+        Real3 along = unit(toward(node.position, l));
+        Real stretching = dot(passing(node.velocity, l), along);
+        force += (share(l) * stiffness(l) * Real(pass.link_damping) * stretching) * along;
+    }
+    return force;
 }
 
 // A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
 FN Real3 tip_force(Real3 position, int i) {
-    Real3 away = position - Real3(pass.tip[i].x, pass.tip[i].y, pass.tip[i].z);
+    Real3 away = position - xyz(pass.tip[i]);
     Real square = squared(away);
     Real inverse = inversesqrt(square);
     Real depth = max(Real(pass.tip[i].w) + cover() - square * inverse, Real(0.0f));
     return (Real(pass.tip_push[i].x) * area() * depth * inverse) * away;
 }
 
+FN Real3 drag_force(Real3 position, int i) {
+    return (held(i) * Real(pass.drag[i].w)) * (xyz(pass.drag[i]) - position);
+}
+
+// The air presses with half its density x the square of its speed through the surface: on both sides of a sheet, on
+// a solid from the windward side. Along the surface it slides past.
+FN Real3 wind_force(Node node, Real3 outward) {
+    Real3 normal = unit(outward);
+    Real through = dot(xyz(pass.wind) - node.velocity, normal);
+    if (pass.fan == 0) through = min(through, Real(0.0f));
+    return (Real(0.5f * pass.wind.w) * area() * max(through, -through) * through) * normal;
+}
+
 FN Real3 acceleration(Node node) {
-    Real3 force = springs(node.position).force;
+    Pull pull = springs(node.position);
+    Real3 force = pull.force;
+    if (pass.link_damping > 0.0f) force += dashpots(node);
     for (int i = 0; i < pass.tips; ++i) force += tip_force(node.position, i);
-    Real3 gravity = Real3(pass.gravity.x, pass.gravity.y, pass.gravity.z);
-    return node.inverse_mass * force + gravity - Real(pass.damping) * node.velocity;
-}
-
-// ---- colliders ----
-
-// Lifts a node out by depth along a unit normal and stops its motion inward. No depth, no contact.
-FN Node push_out(Node node, Real3 normal, Real depth) {
-    Real inward = min(dot(node.velocity, normal), Real(0.0f));
-    node.position += max(depth, Real(0.0f)) * normal;
-    node.velocity -= select(depth > Real(0.0f), inward, Real(0.0f)) * normal;
-    return node;
-}
-
-FN Node collide(Node node) {
-    for (int i = 0; i < pass.planes; ++i) {
-        Real3 normal = Real3(pass.plane[i].x, pass.plane[i].y, pass.plane[i].z);
-        node = push_out(node, normal, Real(pass.plane[i].w) - dot(node.position, normal));
-    }
-    for (int i = 0; i < pass.spheres; ++i) {
-        Real3 away = node.position - Real3(pass.sphere[i].x, pass.sphere[i].y, pass.sphere[i].z);
-        Real square = squared(away);
-        Real inverse = inversesqrt(square);
-        node = push_out(node, inverse * away, Real(pass.sphere[i].w) - inverse * square);
-    }
-    return node;
+    for (int i = 0; i < pass.drags; ++i) force += drag_force(node.position, i);
+    if (pass.wind.w > 0.0f) force += wind_force(node, pull.outward);
+    return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;
 }
 
 // ---- motion ----
 
-// One pass: the velocity goes on by kick, then the position by drift with the new velocity. What is pinned stays.
-FN Node integrate(Node node, Real3 change) {
-    Node next = node;
-    next.velocity += Real(pass.kick) * change;
-    next.position += Real(pass.drift) * next.velocity;
-    next = collide(next);
-    next.position = select(node.inverse_mass > Real(0.0f), next.position, node.position);
-    next.velocity = select(node.inverse_mass > Real(0.0f), next.velocity, node.velocity);
+// One pass of a step that began at `start`: from its velocity and position on, with the velocity and the
+// acceleration of `now`. What has no inverse mass keeps its velocity.
+FN Node integrate(Node start, Node now, Real3 change) {
+    Node next = start;
+    Real free = select(start.inverse_mass > Real(0.0f), Real(1.0f), Real(0.0f));
+    next.velocity += (free * Real(pass.kick)) * change;
+    next.position += Real(pass.drift) * (now.velocity + Real(pass.lead) * (next.velocity - now.velocity));
     return next;
+}
+
+// What a pass adds to the sum over all passes of a step.
+FN Node collect(Node sum, Node now, Real3 change) {
+    Real free = select(now.inverse_mass > Real(0.0f), Real(1.0f), Real(0.0f));
+    sum.velocity += (free * Real(pass.part)) * change;
+    sum.position += Real(pass.part) * now.velocity;
+    return sum;
 }

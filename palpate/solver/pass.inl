@@ -1,6 +1,7 @@
 // pass.inl: what all nodes of a body share during one pass. C++, GLSL (std140) and CUDA read the same bytes, so an
 // array holds nothing smaller than a vec4. The host fills it; node.inl reads it.
 
+// A link of a grid's stencil; what a node's own table says is not here.
 struct Spring {
     int   offset;      // to the neighbour, in nodes, where a backend lays its nodes out as a grid
     float stiffness;   // N/m
@@ -8,19 +9,37 @@ struct Spring {
     float spare;
 };
 
+const int half_space = 0, round_box = 1, polygon = 2, field = 3;  // kinds of obstacles
+
+// A collider where it is in this pass, in a frame of its own: a half-space below y = 0; a box around the origin, whose
+// rounding makes it a ball or a capsule too; triangles; a distance field.
+struct Obstacle {
+    vec4  x, y, z;     // rows: what takes a point of the world into its frame
+    vec4  size;        // of the box: half its sides, and its rounding; m
+    vec4  place;       // its origin in the world; w: how far nodes stay off its surface, m
+    vec4  velocity;    // of its origin, m/s; w: friction
+    vec4  spin;        // rad/s, about its origin
+    ivec4 kind;        // one of the above; first corner and number of corners of a polygon; number of a field
+};
+
 struct Pass {
     vec4  gravity;     // m/s^2
+    vec4  wind;        // m/s; w: density of the air, kg/m^3
     float kick;        // s: how far this pass carries the velocities ...
-    float drift;       // s: ... and the positions
-    float damping;     // 1/s
-    int   links;
+    float drift;       // s: ... and the positions,
+    float lead;        // with the velocities from before the pass (0), with the new ones (1), or between
+    float part;        // s: the weight of this pass in the sum over a step
+    float duration;    // s, of the step
+    float damping;     // 1/s, of velocities
+    float link_damping;  // s: a spring resists its stretching with this x stiffness
+    int   links;       // of a node
+    int   fan;         // the first so many of them go round it in a sheet
     int   tips;
-    int   planes;
-    int   spheres;
-    int   spare;
+    int   drags;
+    int   obstacles;   // none except in the last pass of a step
     vec4  tip[8];      // centre, radius
     vec4  tip_push[8]; // x: pressure for each metre of depth, Pa/m
-    vec4  plane[8];    // unit normal, offset
-    vec4  sphere[8];   // centre, radius
+    vec4  drag[8];     // where to, stiffness in N/m
+    Obstacle obstacle[16];
     Spring spring[32];
 };

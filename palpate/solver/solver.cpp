@@ -1,6 +1,7 @@
 #include "palpate/solver/solver.h"
 
 #include "palpate/base/error.h"
+#include "palpate/solver/pass.h"
 #include "palpate/solver/reference/reference.h"
 #include "palpate/solver/stability.h"
 
@@ -13,30 +14,39 @@ namespace palpate {
 namespace {
 
 constexpr double most_steps_per_frame = 1000;
+constexpr std::size_t most_triangles = 1000;
 
 void check_step(const Body& body, const Simulation& simulation, double frequency) {
-    const double pressed = pressed_frequency(body, frequency, simulation.contact);
-    const double bound = longest_step(simulation.integrator, pressed, body.damping);
+    const double touched = touched_frequency(body, frequency, simulation.contact, simulation.pull);
+    const auto integrator = simulation.integrator;
+    const double bound = longest_step(integrator, touched, body.damping, body.link_damping);
     const std::string where = body.name.empty() ? "the body" : "body " + body.name;
     if (simulation.step > bound && !simulation.force)
         throw Error(fmt::format("a step of {:.4g} s is above {}'s stability bound of {:.4g} s",
-                                simulation.step, name_of(simulation.integrator), bound),
+                                simulation.step, name_of(integrator), bound),
                     where, "use step = \"auto\" or a shorter one, or --force to see it blow up");
-    const double step = simulation.step > 0 ? simulation.step : step_safety * bound;
+    if (simulation.step <= 0 && !(bound > 0))
+        throw Error(fmt::format("{} is stable at no step without damping", name_of(integrator)), where,
+                    "give the body damping, or choose verlet");
+    const double step = simulation.step > 0
+                            ? simulation.step
+                            : automatic_step(integrator, touched, body.damping, body.link_damping);
     if (!(simulation.frame / step <= most_steps_per_frame))
-        throw Error(
-            fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of {:.3g} s",
-                        name_of(simulation.integrator), simulation.frame / step, step, simulation.frame),
-            where, "use a softer material, a larger spacing or a heavier body, and check its units");
+        throw Error(fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of {:.3g} s",
+                                name_of(integrator), simulation.frame / step, step, simulation.frame),
+                    where,
+                    integrator == Integrator::explicit_euler || integrator == Integrator::midpoint
+                        ? "choose verlet, or give the body more damping"
+                        : "use a softer material, a larger spacing or a heavier body, and check its units");
 }
 
 void check_colliders(const Simulation& simulation) {
-    int planes = 0;
-    for (const Collider& collider : simulation.colliders) planes += std::holds_alternative<Plane>(collider);
-    const int spheres = int(simulation.colliders.size()) - planes;
-    if (planes > 8 || spheres > 8)
-        throw Error(fmt::format("{} planes and {} spheres", planes, spheres), "the colliders",
-                    "use at most 8 of each kind");
+    if (simulation.colliders.size() > std::size(Pass{}.obstacle))
+        throw Error(fmt::format("{} colliders", simulation.colliders.size()), "the colliders",
+                    fmt::format("use at most {}", std::size(Pass{}.obstacle)));
+    if (const std::size_t corners = polygon_corners(simulation).size(); corners > 3 * most_triangles)
+        throw Error(fmt::format("{} triangles in polygons", corners / 3), "the colliders",
+                    fmt::format("use at most {}, or the distance field of a closed mesh", most_triangles));
 }
 
 }  // namespace

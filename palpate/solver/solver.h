@@ -1,11 +1,10 @@
 #pragma once
 #include "palpate/body/body.h"
+#include "palpate/body/influences.h"
 #include "palpate/body/nodes.h"
-#include "palpate/body/press.h"
 #include "palpate/body/simulation.h"
 
 #include <memory>
-#include <span>
 #include <vector>
 
 namespace palpate {
@@ -15,9 +14,11 @@ struct Stats {
     int steps = 0;
     double step = 0;           // s, the length of each
     double largest_speed = 0;  // m/s, of any node at the end
+    double largest_move = 0;   // m, of any node in the last step
     bool diverged = false;     // the motion blew up; the state is that from before the call
     std::vector<dvec3>
-        reactions;  // N s, one a press: the impulse that the body gave to the tip, and its opposite got
+        reactions;  // N s, one a press: the impulse that the body gave to the tip; its opposite it got
+    std::vector<dvec3> pulls;  // N s, one a drag, likewise
 };
 
 /// How many equal steps, none longer than `longest`, fill a time; at least one.
@@ -28,23 +29,29 @@ class Solver {
  public:
     virtual ~Solver() = default;
 
-    /// Moves the body on by `seconds`, in equal steps no longer than the chosen one, with at most 8 tips
-    /// pressing.
-    virtual Stats step(double seconds, std::span<const Press> presses = {}) = 0;
+    /// Moves the body on by `seconds`, in equal steps no longer than the chosen one.
+    virtual Stats step(double seconds, const Influences& influences = {}) = 0;
 
-    /// The longest step that step() would take with these presses, s.
-    virtual double longest_step(std::span<const Press> presses) const = 0;
+    /// The longest step that step() would take with these, s.
+    virtual double longest_step(const Influences& influences = {}) const = 0;
 
     /// Where the nodes are now; valid until the next step.
     virtual Nodes nodes() const = 0;
 
-    /// Positions and velocities at the same moment, whatever the integrator's own bookkeeping; as if the tips
-    /// were lifted just then.
+    /// Positions and velocities at the same moment, whatever the integrator's own bookkeeping; as if tips,
+    /// drags and wind were gone just then.
     virtual State state() const = 0;
+
+    /// The state as the integrator keeps it, to the bit: going on from it after restore() is going on from
+    /// here.
+    virtual State save() const = 0;
+
+    /// Goes on from a state of the same body, from save() or state() of any integrator and backend.
+    virtual void restore(const State& state) = 0;
 };
 
-/// Throws Error if a step above the stability bound is asked for without `force`, if a frame would take more
-/// than 1,000 steps, or if there are more than 8 planes or 8 spheres.
+/// Throws Error if a step above the stability bound is asked for without `force`, if the integrator has none
+/// without damping, if a frame would take more than 1,000 steps, or if there are more colliders than fit.
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation);
 
 }  // namespace palpate

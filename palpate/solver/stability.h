@@ -8,17 +8,21 @@ namespace palpate {
 /// by power iteration, so it is at most 1 or 2 % too low.
 double highest_frequency(const Body& body);
 
-/// The same with a press of `contact` (Pa/m, pressure_per_metre) on any node: it stiffens one node in one
-/// direction, at worst the one with the most area for its mass.
-double pressed_frequency(const Body& body, double frequency, float contact);
+/// The same with presses of `contact` (Pa/m, pressure_per_metre) and drags of `pull` (N/m) on any node: each
+/// stiffens one node in one direction, at worst the one with the most area for its mass, or the lightest.
+double touched_frequency(const Body& body, double frequency, float contact, float pull);
 
-/// The longest step with which an integrator keeps a motion of this frequency bounded, s: the point where a
-/// root of its amplification polynomial leaves the unit circle (architecture.md, "How long a step may be").
-/// Infinite at frequency 0 without damping.
-double longest_step(Integrator integrator, double frequency, double damping);
+/// How much a step of `step` seconds makes a motion of one frequency grow at most: the largest absolute value
+/// of the eigenvalues of what the integrator does to position and velocity of x'' = -ω² x - (c + β ω²) x'.
+/// The motion stays bounded while that is at most 1. `damping`: c, 1/s; `link_damping`: β, s.
+double growth(Integrator integrator, double step, double frequency, double damping, double link_damping);
 
-/// The share of the longest step that `step = "auto"` takes. Springs stretched far beyond rest raise the
-/// highest frequency of a lattice by at most √2, so this is stable at any deformation.
-inline constexpr double step_safety = 0.7;
+/// The longest step with which an integrator keeps all motions up to this frequency bounded, s. 0 where there
+/// is none: explicit Euler and midpoint without damping. Infinite at frequency 0 without damping.
+double longest_step(Integrator integrator, double frequency, double damping, double link_damping = 0);
+
+/// The step that `step = "auto"` takes, s: 0.7 of the longest, and no more than is stable with springs
+/// stretched far beyond rest, which raise the highest frequency of a lattice by at most √2.
+double automatic_step(Integrator integrator, double frequency, double damping, double link_damping = 0);
 
 }  // namespace palpate

@@ -162,7 +162,7 @@ TEST(Embedding, ApproximateNormalsPointOutward) {
     const Body body = lattice({5, 5, 5}, 0.01f, tissue);
     const std::vector<vec3> normals = approximate_normals(body, body.positions);
     for (std::size_t i = 0; i < body.count(); ++i) {
-        const vec3 out = vec3(body.springs.at[i]) - 2.0f;
+        const vec3 out = vec3(body.stencil().at[i]) - 2.0f;
         const bool inside = glm::all(glm::lessThan(glm::abs(out), vec3(1.5f)));
         if (inside)
             EXPECT_LE(glm::length(normals[i]), 1e-5);

@@ -85,8 +85,8 @@ path = [[0, 0, 0, 0], [1, 0.1, 0, 0]]
     EXPECT_EQ(brain.pin.box.size(), 2u);
     EXPECT_EQ(brain.material.links, Links::equal);
     EXPECT_EQ(brain.mapping, Mapping::constant);
-    EXPECT_EQ(std::get<Plane>(scene.simulation.colliders.at(0)).normal, vec3(0, 1, 0));
-    EXPECT_EQ(std::get<Sphere>(scene.simulation.colliders.at(1)).radius, 0.2f);
+    EXPECT_EQ(std::get<Plane>(scene.simulation.colliders.at(0).shape).normal, vec3(0, 1, 0));
+    EXPECT_EQ(std::get<Sphere>(scene.simulation.colliders.at(1).shape).radius, 0.2f);
     EXPECT_EQ(scene.tools.at(0).path.size(), 2u);
     EXPECT_EQ(position(scene.tools[0].path, 0.5), vec3(0.05f, 0, 0));
 }

@@ -33,19 +33,20 @@ Pulled pull(int thick, Links links) {
     for (int i = 0; i < 240; ++i) solver->step(1.0 / 60);
 
     const std::vector<dvec3> p = solver->state().positions;
-    const std::vector<int> ends = neighbours(body);
+    const Table springs = table(body);
     const int middle = length / 2;
     double force = 0, left = 0, right = 0;
     for (std::size_t i = 0; i < body.count(); ++i) {
-        const int x = body.springs.at[i].x;
+        const int x = body.stencil().at[i].x;
         if (x == middle - 2) left += p[i].x / (thick * thick);
         if (x == middle + 2) right += p[i].x / (thick * thick);
+        if (x != middle) continue;
         for (std::size_t l = 0; l < 18; ++l) {
-            const int j = ends[i * 18 + l];
-            if (x != middle || j < 0 || body.springs.links[l].offset.x != 1) continue;
-            const double d = glm::distance(p[i], p[j]);
-            const double k = body.springs.quarters(i, l) / 4.0 * body.springs.links[l].stiffness;
-            force += k * (d - body.springs.links[l].rest) * (p[j].x - p[i].x) / d;
+            const Tie& tie = springs.of(i)[l];
+            if (tie.to < 0 || body.stencil().links[l].offset.x != 1) continue;
+            const dvec3 along = p[std::size_t(tie.to)] - p[i];
+            const double d = glm::length(along);
+            force += double(tie.share) * tie.stiffness * (d - tie.rest) * along.x / d;
         }
     }
     return {force, (right - left) / (4 * double(h)) - 1};

@@ -14,9 +14,27 @@ namespace {
 const std::string folder = PALPATE_SOURCE_DIR "/palpate/solver/";
 
 std::string physics() {
-    return "#define FN\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define Real3 vec3\n"
+    return "#define FN\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define Real3 "
+           "vec3\n#define Real4 vec4\n"
            "#define select(c, a, b) ((c) ? (a) : (b))\n" +
            read_text(folder + "pass.inl") + "layout(std140, binding = 0) uniform Uniforms { Pass pass; };\n";
+}
+
+// What a backend tells the physics of a node, besides its neighbours; and the physics.
+std::string eyes() {
+    return R"(
+        layout(binding = 2) uniform samplerBuffer corners;
+        layout(binding = 3) uniform sampler3D distances;
+        float share(int l) { return 1.0; }
+        float stiffness(int l) { return pass.spring[l].stiffness; }
+        float tension(int l) { return pass.spring[l].tension; }
+        float area() { return 1.0; }
+        float cover() { return 0.0; }
+        float held(int i) { return 0.0; }
+        vec3 corner(int i) { return texelFetch(corners, i).xyz; }
+        vec4 distance_at(int i, vec3 p) { return texture(distances, p); }
+    )" + read_text(folder + "node.inl") +
+           read_text(folder + "obstacles.inl");
 }
 
 std::string compute_shader() {
@@ -26,14 +44,12 @@ std::string compute_shader() {
         layout(std430, binding = 1) writeonly buffer Next { Stored next[]; };
         int id;
         vec3 toward(vec3 p, int l) { return now[id + pass.spring[l].offset].position.xyz - p; }
-        float share(int l) { return 1.0; }
-        float area() { return 1.0; }
-        float cover() { return 0.0; })" +
-           read_text(folder + "node.inl") + R"(
+        vec3 passing(vec3 v, int l) { return now[id + pass.spring[l].offset].velocity.xyz - v; })" +
+           eyes() + R"(
         void main() {
             id = int(gl_GlobalInvocationID.x);
             Node node = Node(now[id].position.xyz, now[id].velocity.xyz, now[id].position.w);
-            node = integrate(node, acceleration(node));
+            node = collide(integrate(node, node, acceleration(node)), node.position);
             next[id] = Stored(vec4(node.position, node.inverse_mass), vec4(node.velocity, 0));
         })";
 }
@@ -44,14 +60,13 @@ std::string feedback_shader() {
         layout(location = 1) in vec3 velocity;
         layout(binding = 0) uniform samplerBuffer positions;
         out vec3 next_position, next_velocity;
+        layout(binding = 1) uniform samplerBuffer velocities;
         vec3 toward(vec3 p, int l) { return texelFetch(positions, gl_VertexID + pass.spring[l].offset).xyz - p; }
-        float share(int l) { return 1.0; }
-        float area() { return 1.0; }
-        float cover() { return 0.0; })" +
-           read_text(folder + "node.inl") + R"(
+        vec3 passing(vec3 v, int l) { return texelFetch(velocities, gl_VertexID + pass.spring[l].offset).xyz - v; })" +
+           eyes() + R"(
         void main() {
             Node node = Node(position.xyz, velocity, position.w);
-            node = integrate(node, acceleration(node));
+            node = collide(integrate(node, node, acceleration(node)), node.position);
             next_position = node.position;
             next_velocity = node.velocity;
         })";

@@ -1,45 +1,76 @@
 #include "palpate/solver/reference/reference.h"
 
+#include "palpate/solver/pass.h"
+#include "palpate/solver/scheme.h"
 #include "palpate/solver/stability.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
 namespace {
 
-#include "palpate/solver/pass.inl"
+// What all nodes look at while a pass runs.
+struct World {
+    Pass pass;
+    Table springs;
+    std::vector<vec3> corners;                 // of polygons
+    std::vector<const DistanceField*> fields;  // of closed meshes
+    std::vector<int> dragged;                  // the node of each drag
+};
+
+template <class Real>
+struct Moving {
+    std::vector<glm::vec<3, Real>> positions, velocities;
+};
 
 // A node with its backend's eyes: how it sees its neighbours. The physics is node.inl's.
 template <class Number>
 struct ReferenceNode {
     using Real = Number;
     using Real3 = glm::vec<3, Real>;
+    using Real4 = glm::vec<4, Real>;
 
+    const World& world;
     const Pass& pass;
-    const std::vector<Real3>& positions;
-    const int* ends;     // this node's neighbours, one a link; itself where there is none
-    const Real* shares;  // 0 to 1, one a link
+    const Moving<Real>& now;
+    int id;
+    const Tie* ties;  // this node's springs
     Real outside_area, outside_cover;
 
-    Real3 toward(Real3 p, int l) const { return positions[ends[l]] - p; }
-    Real share(int l) const { return shares[l]; }
+    // Where there is no spring its end is the node itself, and it pulls at nothing.
+    Real3 toward(Real3 p, int l) const {
+        return ties[l].to < 0 ? Real3(0) : now.positions[std::size_t(ties[l].to)] - p;
+    }
+    Real3 passing(Real3 v, int l) const {
+        return ties[l].to < 0 ? Real3(0) : now.velocities[std::size_t(ties[l].to)] - v;
+    }
+    Real share(int l) const { return ties[l].share; }
+    Real stiffness(int l) const { return ties[l].stiffness; }
+    Real tension(int l) const { return ties[l].stiffness * ties[l].rest; }
     Real area() const { return outside_area; }
     Real cover() const { return outside_cover; }
+    Real held(int i) const { return world.dragged[std::size_t(i)] == id ? Real(1) : Real(0); }
+    Real3 corner(int i) const { return Real3(world.corners[std::size_t(i)]); }
+    Real4 distance_at(int i, Real3 p) const {
+        const DistanceField& field = *world.fields[std::size_t(i)];
+        const float h = 0.5f * field.spacing;
+        auto at = [&](float x, float y, float z) { return field.at(vec3(p) + vec3(x, y, z)); };
+        return {at(h, 0, 0) - at(-h, 0, 0), at(0, h, 0) - at(0, -h, 0), at(0, 0, h) - at(0, 0, -h),
+                at(0, 0, 0)};
+    }
 
     static Real max(Real a, Real b) { return a > b ? a : b; }
     static Real min(Real a, Real b) { return a < b ? a : b; }
     static Real inversesqrt(Real a) { return 1 / std::sqrt(a); }
-    template <class T>
-    static T select(bool c, T a, T b) {
-        return c ? a : b;
-    }
+    static Real select(bool c, Real a, Real b) { return c ? a : b; }
+    static Real3 select(bool c, Real3 a, Real3 b) { return c ? a : b; }
 
 #define FN
 #define UNROLL
 #define LINKS pass.links
 #include "palpate/solver/node.inl"
+#include "palpate/solver/obstacles.inl"
 #undef LINKS
 #undef UNROLL
 #undef FN
@@ -53,152 +84,196 @@ class Reference final : public Solver {
 
  public:
     Reference(const Body& body, const Simulation& simulation, double frequency)
-        : body_(body), simulation_(simulation), frequency_(frequency), ends_(neighbours(body)) {
-        for (std::size_t i = 0; i < ends_.size(); ++i) {
-            const std::size_t node = i / links(), link = i % links();
-            if (ends_[i] < 0) ends_[i] = int(node);
-            shares_.push_back(Real(0.25f) * Real(body.springs.quarters(node, link)));
-        }
+        : body_(body),
+          simulation_(simulation),
+          scheme_(scheme(simulation.integrator)),
+          frequency_(frequency) {
+        world_ = {make_pass(body, simulation_),
+                  table(body),
+                  polygon_corners(simulation_),
+                  distance_fields(simulation_),
+                  {}};
         for (vec3 p : body.positions) now_.positions.push_back(Real3(p));
         now_.velocities.assign(body.count(), Real3(0));
-        next_ = now_;
-        fill_pass();
+        first_ = second_ = sum_ = now_;
         publish();
     }
 
-    Stats step(double seconds, std::span<const Press> presses) override {
+    Stats step(double seconds, const Influences& influences) override {
         Stats stats;
-        stats.reactions.assign(presses.size(), dvec3(0));
-        stats.steps = steps_within(seconds, longest_step(presses));
+        stats.reactions.assign(influences.presses.size(), dvec3(0));
+        stats.pulls.assign(influences.drags.size(), dvec3(0));
+        stats.steps = steps_within(seconds, longest_step(influences));
         stats.step = seconds / stats.steps;
-        const Moving before = now_;
-        const double lag_before = lag_;
-        for (int i = 0; i < stats.steps; ++i) {
-            pass_.kick = float(kick(stats.step));
-            pass_.drift = float(stats.step);
-            place_tips(presses, i * stats.step);
-            for (std::size_t p = 0; p < presses.size(); ++p) stats.reactions[p] -= impulse_of_tip(int(p));
-            move_all();
-            lag_ = staggered() ? stats.step / 2 : 0;
-        }
+        const State before = save();
+        world_.dragged.clear();
+        for (const Drag& drag : influences.drags) world_.dragged.push_back(drag.node);
+        world_.pass.wind = vec4(influences.wind, simulation_.air);
+        send_off(influences.moves, seconds);
+        for (int i = 0; i < stats.steps; ++i) one_step(i * stats.step, stats, influences);
         if (torn()) {
+            restore(before);
             stats.diverged = true;
-            now_ = before;
-            lag_ = lag_before;
+            return stats;
         }
-        for (Real3 v : now_.velocities)
-            stats.largest_speed = std::max(stats.largest_speed, double(glm::length(v)));
+        arrive(influences.moves);
+        for (std::size_t i = 0; i < body_.count(); ++i) {
+            stats.largest_speed = std::max(stats.largest_speed, double(glm::length(now_.velocities[i])));
+            // After a step, first_ holds where it began.
+            const Real way = glm::distance(now_.positions[i], first_.positions[i]);
+            stats.largest_move = std::max(stats.largest_move, double(way));
+        }
         publish();
         return stats;
     }
 
-    double longest_step(std::span<const Press> presses) const override {
+    double longest_step(const Influences& influences) const override {
         if (simulation_.step > 0) return simulation_.step;
-        float contact = 0;
-        for (const Press& press : presses)
-            contact += pressure_per_metre(press);  // they may all meet at one node
-        const double frequency = pressed_frequency(body_, frequency_, std::max(contact, simulation_.contact));
-        return step_safety * palpate::longest_step(simulation_.integrator, frequency, body_.damping);
+        float contact = 0, pull = 0;  // they may all meet at one node
+        for (const Press& press : influences.presses) contact += pressure_per_metre(press);
+        for (const Drag& drag : influences.drags) pull += drag.stiffness;
+        const double frequency = touched_frequency(body_, frequency_, std::max(contact, simulation_.contact),
+                                                   std::max(pull, simulation_.pull));
+        return automatic_step(simulation_.integrator, frequency, body_.damping, body_.link_damping);
     }
 
     Nodes nodes() const override { return {positions_, normals_}; }
 
     State state() const override {
         // Staggered velocities lie `lag` behind the positions: half a kick brings them up.
-        Pass pass = pass_;
+        Pass pass = world_.pass;
         pass.kick = float(lag_ / (1 + body_.damping * lag_));
-        pass.tips = 0;
-        State state;
-        for (std::size_t i = 0; i < body_.count(); ++i) {
-            At at = node_at(i, pass);
-            Node node = load(i);
-            if (lag_ > 0 && node.inverse_mass > 0) node.velocity += Real(pass.kick) * at.acceleration(node);
-            state.positions.push_back(dvec3(node.position));
-            state.velocities.push_back(dvec3(node.velocity));
-        }
+        pass.tips = pass.drags = 0;
+        pass.wind.w = 0;
+        State state = save();
+        state.lag = 0;
+        for (std::size_t i = 0; i < body_.count() && lag_ > 0; ++i)
+            if (const Node node = load(now_, i); node.inverse_mass > 0)
+                state.velocities[i] += dvec3(Real(pass.kick) * see(i, now_, pass).acceleration(node));
         return state;
     }
 
+    State save() const override {
+        State state;
+        for (Real3 p : now_.positions) state.positions.push_back(dvec3(p));
+        for (Real3 v : now_.velocities) state.velocities.push_back(dvec3(v));
+        state.lag = lag_;
+        return state;
+    }
+
+    void restore(const State& state) override {
+        for (std::size_t i = 0; i < body_.count(); ++i) {
+            now_.positions[i] = Real3(state.positions[i]);
+            now_.velocities[i] = Real3(state.velocities[i]);
+        }
+        lag_ = state.lag;
+        publish();
+    }
+
  private:
-    struct Moving {
-        std::vector<Real3> positions, velocities;
-    };
-
-    std::size_t links() const { return body_.springs.links.size(); }
-    bool staggered() const { return simulation_.integrator == Integrator::verlet; }
-
-    void fill_pass() {
-        pass_.gravity = vec4(simulation_.gravity, 0);
-        pass_.damping = body_.damping;
-        pass_.links = int(links());
-        for (std::size_t l = 0; l < links(); ++l) {
-            const Link& link = body_.springs.links[l];
-            pass_.spring[l] = {0, link.stiffness, link.stiffness * link.rest, 0};
+    // One step, stage after stage: the neighbours move too. It ends in now_, and first_ holds where it began.
+    void one_step(double time, Stats& stats, const Influences& influences) {
+        Pass& pass = world_.pass;
+        const double step = stats.step;
+        double reached = 0;  // by the last stage, in steps
+        if (scheme_.stages[0].part > 0) sum_ = now_;
+        const Moving<Real>* at = &now_;
+        for (const Stage& stage : scheme_.stages) {
+            const bool last = &stage == &scheme_.stages.back();
+            pass.kick = float(scheme_.kick(stage, step, lag_, body_.damping));
+            pass.drift = float(stage.drift * step);
+            pass.lead = float(stage.lead);
+            pass.part = float(stage.part * step);
+            pass.duration = float(step);
+            place_tools(pass, influences, time + reached * step);
+            pass.obstacles = 0;
+            if (last) place_obstacles(pass, simulation_, influences, time + step);
+            count_impulses(*at, last ? pass.kick : pass.part, stats);
+            Moving<Real>& next = at == &first_ ? second_ : first_;
+            pass_over_nodes(stage.from_sum ? sum_ : now_, *at, next, last);
+            at = &next;
+            reached = stage.drift;
         }
-        for (const Collider& collider : simulation_.colliders) {
-            if (const auto* plane = std::get_if<Plane>(&collider))
-                pass_.plane[pass_.planes++] = vec4(plane->normal, plane->offset);
-            else if (const auto* sphere = std::get_if<Sphere>(&collider))
-                pass_.sphere[pass_.spheres++] = vec4(sphere->centre, sphere->radius);
+        if (at == &second_) std::swap(first_, second_);
+        std::swap(now_, first_);
+        lag_ = scheme_.staggered ? step / 2 : 0;
+    }
+
+    void pass_over_nodes(const Moving<Real>& start, const Moving<Real>& at, Moving<Real>& next, bool last) {
+        const Pass& pass = world_.pass;
+        for (std::size_t i = 0; i < body_.count(); ++i) {
+            At eyes = see(i, at, pass);
+            const Node node = load(at, i);
+            const Real3 change = pass.kick > 0 ? eyes.acceleration(node) : Real3(0);
+            if (pass.part > 0) {
+                const Node sum = eyes.collect(load(sum_, i), node, change);
+                sum_.positions[i] = sum.position;
+                sum_.velocities[i] = sum.velocity;
+            }
+            Node moved = eyes.integrate(load(start, i), node, change);
+            if (last) moved = eyes.collide(moved, now_.positions[i]);
+            next.positions[i] = moved.position;
+            next.velocities[i] = moved.velocity;
         }
     }
 
-    // How far a step carries the velocities. Semi-implicit Euler: one step. Verlet's velocities run half a
-    // step behind the positions, so a kick goes from the middle of the last step (at the start: from now) to
-    // the middle of this one; damping acts on the mean of the old and the new velocity, which is what keeps
-    // the order at two.
-    double kick(double dt) const { return staggered() ? (lag_ + dt / 2) / (1 + body_.damping * lag_) : dt; }
-
-    void place_tips(std::span<const Press> presses, double time) {
-        assert(presses.size() <= std::size(pass_.tip));
-        pass_.tips = int(presses.size());
-        for (std::size_t i = 0; i < presses.size(); ++i) {
-            const Press& press = presses[i];
-            pass_.tip[i] = vec4(press.centre + float(time) * press.velocity, press.radius);
-            pass_.tip_push[i] = vec4(pressure_per_metre(press), 0, 0, 0);
+    // N s, that tips and drags give to the nodes in this pass, and get back.
+    void count_impulses(const Moving<Real>& at, double seconds, Stats& stats) const {
+        const Pass& pass = world_.pass;
+        for (std::size_t t = 0; t < stats.reactions.size(); ++t)
+            for (std::size_t i = 0; i < body_.count(); ++i)
+                stats.reactions[t] -= seconds * dvec3(see(i, at, pass).tip_force(at.positions[i], int(t)));
+        for (std::size_t d = 0; d < stats.pulls.size(); ++d) {
+            const std::size_t i = std::size_t(world_.dragged[d]);
+            stats.pulls[d] -= seconds * dvec3(see(i, at, pass).drag_force(at.positions[i], int(d)));
         }
     }
 
-    // N s, that a tip gives to the nodes in this pass.
-    dvec3 impulse_of_tip(int tip) const {
-        dvec3 force(0);
+    // Gives the nodes of prescribed motion the velocities that bring them where they shall be.
+    void send_off(std::span<const Move> moves, double seconds) {
         for (std::size_t i = 0; i < body_.count(); ++i)
-            force += dvec3(node_at(i, pass_).tip_force(now_.positions[i], tip));
-        return double(pass_.kick) * force;
+            if (!(body_.inverse_mass[i] > 0)) now_.velocities[i] = Real3(0);
+        for (const Move& move : moves)
+            for (std::size_t k = 0; k < move.nodes.size(); ++k) {
+                const std::size_t i = std::size_t(move.nodes[k]);
+                if (body_.inverse_mass[i] > 0) continue;
+                now_.velocities[i] = (Real3(move.to[k]) - now_.positions[i]) / Real(seconds);
+            }
     }
 
-    At node_at(std::size_t i, const Pass& pass) const {
-        return {pass,
-                now_.positions,
-                &ends_[i * links()],
-                &shares_[i * links()],
+    // Takes the rounding of many steps away.
+    void arrive(std::span<const Move> moves) {
+        for (const Move& move : moves)
+            for (std::size_t k = 0; k < move.nodes.size(); ++k)
+                if (!(body_.inverse_mass[std::size_t(move.nodes[k])] > 0))
+                    now_.positions[std::size_t(move.nodes[k])] = Real3(move.to[k]);
+    }
+
+    At see(std::size_t i, const Moving<Real>& now, const Pass& pass) const {
+        return {world_,
+                pass,
+                now,
+                int(i),
+                &world_.springs.ties[i * std::size_t(world_.springs.width)],
                 Real(body_.area[i]),
                 Real(body_.cover[i])};
     }
-    Node load(std::size_t i) const {
-        return {now_.positions[i], now_.velocities[i], Real(body_.inverse_mass[i])};
-    }
-
-    void move_all() {
-        for (std::size_t i = 0; i < body_.count(); ++i) {
-            At at = node_at(i, pass_);
-            const Node node = load(i), next = at.integrate(node, at.acceleration(node));
-            next_.positions[i] = next.position;
-            next_.velocities[i] = next.velocity;
-        }
-        std::swap(now_, next_);
+    Node load(const Moving<Real>& from, std::size_t i) const {
+        return {from.positions[i], from.velocities[i], Real(body_.inverse_mass[i])};
     }
 
     // True if a spring is stretched to ten times its length, or a position is not a number: no tissue does
     // that, a motion that blows up soon does.
     bool torn() const {
-        for (std::size_t i = 0; i < body_.count(); ++i)
-            for (std::size_t l = 0; l < links(); ++l) {
-                if (shares_[i * links() + l] == 0) continue;
-                const Real3 along = now_.positions[ends_[i * links() + l]] - now_.positions[i];
-                const Real longest = 10 * Real(body_.springs.links[l].rest);
+        for (std::size_t i = 0; i < body_.count(); ++i) {
+            if (!std::isfinite(glm::dot(now_.positions[i], now_.positions[i]))) return true;
+            for (const Tie& tie : world_.springs.of(i)) {
+                if (tie.to < 0 || !(tie.share * tie.stiffness > 0)) continue;
+                const Real3 along = now_.positions[std::size_t(tie.to)] - now_.positions[i];
+                const Real longest = 10 * Real(tie.rest);
                 if (!(glm::dot(along, along) <= longest * longest)) return true;
             }
+        }
         return false;
     }
 
@@ -207,18 +282,17 @@ class Reference final : public Solver {
         for (Real3 p : now_.positions) positions_.push_back(vec3(p));
         normals_.clear();
         for (std::size_t i = 0; i < body_.count(); ++i)
-            normals_.push_back(vec3(node_at(i, pass_).springs(now_.positions[i]).outward));
+            normals_.push_back(vec3(see(i, now_, world_.pass).springs(now_.positions[i]).outward));
     }
 
-    Body body_;
-    Simulation simulation_;
-    double frequency_;  // rad/s, the highest of the body without a press
-    std::vector<int> ends_;
-    std::vector<Real> shares_;
-    Pass pass_{};
-    double lag_ = 0;  // s, how far the velocities are behind the positions
-    Moving now_, next_;
-    std::vector<vec3> positions_, normals_;  // what nodes() shows
+    const Body body_;
+    const Simulation simulation_;
+    const Scheme& scheme_;
+    double frequency_;  // rad/s, the highest of the body with nothing touching it
+    World world_;
+    double lag_ = 0;                           // s, how far the velocities are behind the positions
+    Moving<Real> now_, first_, second_, sum_;  // the state; those between stages, by turns; the sum over them
+    std::vector<vec3> positions_, normals_;    // what nodes() shows
 };
 
 }  // namespace

@@ -1,0 +1,218 @@
+#include "palpate/body/cloth.h"
+
+#include "palpate/base/error.h"
+#include "palpate/body/grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+
+namespace palpate {
+namespace {
+
+// Round a node first, so that they make its fan; a link and its opposite have the same share.
+constexpr ivec3 round_offsets[4] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+constexpr ivec3 shear_offsets[4] = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}};
+
+// A sheet's mass, by each node's part of its area.
+void weigh(Body& body, const ClothSettings& settings) {
+    assert((settings.density > 0) != (settings.mass > 0));
+    double whole = 0;
+    for (float a : body.area) whole += a;
+    const double density = settings.density > 0 ? settings.density : settings.mass / whole;
+    for (float a : body.area) body.inverse_mass.push_back(float(1 / (density * a)));
+    body.damping = settings.damping;
+    body.link_damping = settings.link_damping;
+    body.cover.assign(body.count(), 0);
+}
+
+// Mean length of the springs that are there.
+float mean_rest(const Table& springs) {
+    double sum = 0;
+    int count = 0;
+    for (const Tie& tie : springs.ties)
+        if (tie.to >= 0 && tie.stiffness > 0) sum += tie.rest, ++count;
+    return count > 0 ? float(sum / count) : 0;
+}
+
+// Lists of ties, one a node, as one table.
+Table pack(const std::vector<std::vector<Tie>>& lists) {
+    Table packed;
+    for (const auto& list : lists) packed.width = std::max(packed.width, int(list.size()));
+    for (const auto& list : lists) {
+        packed.ties.insert(packed.ties.end(), list.begin(), list.end());
+        packed.ties.resize(packed.ties.size() + std::size_t(packed.width) - list.size());
+    }
+    return packed;
+}
+
+// The neighbours of a vertex in turn, counter-clockwise; closed if its triangles go all the way round.
+struct Ring {
+    std::vector<int> nodes;
+    bool closed = false;
+};
+
+// `next`: for each neighbour the one that follows it in a triangle of the vertex.
+Ring ring_of(std::size_t vertex, const std::map<int, int>& next) {
+    const Error mixed(fmt::format("vertex {} does not lie on one sheet", vertex), "the cloth",
+                      "weld the mesh, drop vertices without a face, and take parts that touch apart");
+    if (next.empty()) throw mixed;
+    int first = next.begin()->first;
+    std::map<int, int> before;
+    for (const auto& [a, b] : next)
+        if (!before.emplace(b, a).second) throw mixed;
+    for (std::size_t i = 0; i < next.size() && before.contains(first); ++i) first = before[first];
+    Ring ring;
+    int at = first;
+    ring.nodes.push_back(at);
+    while (next.contains(at) && ring.nodes.size() <= next.size()) {
+        at = next.at(at);
+        if (at == first) {
+            ring.closed = true;
+            break;
+        }
+        ring.nodes.push_back(at);
+    }
+    if (ring.nodes.size() != next.size() + !ring.closed) throw mixed;  // some triangles are on another fan
+    return ring;
+}
+
+std::vector<Ring> rings_of(const Mesh& mesh) {
+    std::vector<std::map<int, int>> next(mesh.positions.size());
+    auto add = [&](unsigned vertex, unsigned a, unsigned b) {
+        if (!next[vertex].emplace(a, b).second)
+            throw Error(fmt::format("three faces or more meet at the edge from vertex {} to {}", vertex, a),
+                        "the cloth", "drop double faces, and turn all faces the same way");
+    };
+    for (uvec3 t : mesh.triangles) {
+        add(t.x, t.y, t.z);
+        add(t.y, t.z, t.x);
+        add(t.z, t.x, t.y);
+    }
+    std::vector<Ring> rings;
+    for (std::size_t v = 0; v < next.size(); ++v) rings.push_back(ring_of(v, next[v]));
+    return rings;
+}
+
+}  // namespace
+
+Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
+    Body body;
+    body.spacing = spacing;
+    body.fan = 4;
+    Stencil& springs = body.springs.emplace<Stencil>();
+    auto add = [&](ivec3 offset, float stiffness) {
+        springs.links.push_back({offset, stiffness, spacing * glm::length(vec3(offset))});
+    };
+    for (ivec3 offset : round_offsets) add(offset, settings.stiffness.structural);
+    for (ivec3 offset : shear_offsets) add(offset, settings.stiffness.shear);
+    for (ivec3 offset : round_offsets) add(2 * offset, settings.stiffness.flexion);
+
+    const ivec3 size(dims, 1);
+    auto in_grid = [&](ivec3 p) {
+        return glm::all(glm::greaterThanEqual(p, ivec3(0))) && glm::all(glm::lessThan(p, size));
+    };
+    for_each_place(size, [&](ivec3 p) {
+        springs.at.push_back(p);
+        body.positions.push_back(spacing * vec3(p));
+        std::uint64_t shares = 0;
+        for (std::size_t l = 0; l < springs.links.size(); ++l)
+            if (in_grid(p + springs.links[l].offset)) shares |= std::uint64_t(4) << 3 * l;
+        springs.shares.push_back(shares);
+        int squares = 0;
+        for (ivec3 diagonal : shear_offsets) squares += in_grid(p + diagonal);
+        body.area.push_back(spacing * spacing * float(std::max(squares, 1)) / 4);
+
+        const int i = int(springs.at.size()) - 1, right = i + 1, up = i + dims.x;
+        if (p.x + 1 == dims.x || p.y + 1 == dims.y) return;
+        body.faces.push_back({i, right, up + 1});
+        body.faces.push_back({i, up + 1, up});
+    });
+    weigh(body, settings);
+    return body;
+}
+
+Body cloth(const Mesh& mesh, const ClothSettings& settings) {
+    Body body;
+    body.positions = mesh.positions;
+    const std::vector<Ring> rings = rings_of(mesh);
+    // One place more than an open ring has neighbours, so that its ends do not meet in the fan.
+    for (const Ring& ring : rings) body.fan = std::max(body.fan, int(ring.nodes.size()) + !ring.closed);
+
+    auto tie = [&](std::size_t from, int to, float stiffness) {
+        return Tie{to, 1, stiffness, glm::distance(mesh.positions[from], mesh.positions[std::size_t(to)])};
+    };
+    std::vector<std::vector<Tie>> ties(mesh.positions.size());
+    for (std::size_t v = 0; v < ties.size(); ++v) {
+        for (int n : rings[v].nodes) ties[v].push_back(tie(v, n, settings.stiffness.structural));
+        // A closed ring shorter than the fan repeats its first neighbour, without a spring, to close it.
+        Tie rest;
+        if (rings[v].closed) rest = {rings[v].nodes[0], 0, 0, ties[v][0].rest};
+        ties[v].resize(std::size_t(body.fan), rest);
+    }
+    body.area.assign(mesh.positions.size(), 0);
+    std::map<std::pair<unsigned, unsigned>, unsigned> opposite;  // of each directed edge
+    for (uvec3 t : mesh.triangles) {
+        const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        const float third = glm::length(glm::cross(b - a, c - a)) / 6;
+        for (int k = 0; k < 3; ++k) {
+            body.area[t[k]] += third;
+            opposite[{t[k], t[(k + 1) % 3]}] = t[(k + 2) % 3];
+        }
+        body.faces.push_back({int(t.x), int(t.y), int(t.z)});
+    }
+    for (const auto& [edge, mine] : opposite) {
+        const auto other = opposite.find({edge.second, edge.first});
+        if (other == opposite.end() || settings.stiffness.flexion <= 0) continue;
+        ties[mine].push_back(tie(mine, int(other->second), settings.stiffness.flexion));
+    }
+    body.springs = pack(ties);
+    body.spacing = mean_rest(std::get<Table>(body.springs));
+    weigh(body, settings);
+    return body;
+}
+
+Body net(std::span<const vec3> positions, std::span<const float> masses, std::span<const NetSpring> springs,
+         std::span<const uvec3> faces) {
+    assert(masses.size() == positions.size());
+    auto check = [&](long node) {
+        if (node < 0 || node >= long(positions.size()))
+            throw Error(fmt::format("node {} of {}", node, positions.size()), "the net",
+                        "count nodes from 0");
+    };
+    Body body;
+    body.positions.assign(positions.begin(), positions.end());
+    for (float m : masses) body.inverse_mass.push_back(m > 0 ? 1 / m : 0);
+    std::vector<std::vector<Tie>> ties(positions.size());
+    for (const NetSpring& s : springs) {
+        check(s.a);
+        check(s.b);
+        const float rest =
+            s.rest > 0 ? s.rest : glm::distance(positions[std::size_t(s.a)], positions[std::size_t(s.b)]);
+        ties[std::size_t(s.a)].push_back({s.b, 1, s.stiffness, rest});
+        ties[std::size_t(s.b)].push_back({s.a, 1, s.stiffness, rest});
+    }
+    body.springs = pack(ties);
+    body.spacing = mean_rest(std::get<Table>(body.springs));
+    body.area.assign(positions.size(), 0);
+    body.cover.assign(positions.size(), 0);
+    for (uvec3 t : faces) {
+        for (int k = 0; k < 3; ++k) check(t[k]);
+        const vec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
+        for (int k = 0; k < 3; ++k) body.area[t[k]] += glm::length(glm::cross(b - a, c - a)) / 6;
+        body.faces.push_back({int(t.x), int(t.y), int(t.z)});
+    }
+    return body;
+}
+
+Mesh face_mesh(const Body& body) {
+    Mesh mesh;
+    mesh.positions = body.positions;
+    for (const auto& f : body.faces) mesh.triangles.push_back({f[0], f[1], f[2]});
+    compute_normals(mesh);
+    return mesh;
+}
+
+}  // namespace palpate

@@ -1,0 +1,43 @@
+#include "palpate/body/collider.h"
+
+#include "palpate/mesh/mesh.h"
+#include "palpate/mesh/solid.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace palpate {
+
+float DistanceField::at(vec3 p) const {
+    const vec3 place = glm::clamp((p - origin) / spacing, vec3(0), vec3(dims - 1));
+    const ivec3 cell = glm::min(ivec3(place), dims - 2);
+    const vec3 part = place - vec3(cell);
+    float sum = 0;
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 side(k & 1, k >> 1 & 1, k >> 2), c = cell + side;
+        const vec3 w = glm::mix(1.0f - part, part, vec3(side));
+        sum += w.x * w.y * w.z * distance[(std::size_t(c.z) * dims.y + c.y) * dims.x + c.x];
+    }
+    return sum;
+}
+
+DistanceField distance_field(const Mesh& mesh, float spacing) {
+    const SignedDistance signed_distance(mesh, spacing);
+    const Bounds box = bounds(mesh);
+    DistanceField field;
+    field.spacing = spacing;
+    field.origin = box.low - 3 * spacing;
+    field.dims = ivec3(glm::ceil(box.size() / spacing)) + 7;
+    field.distance = signed_distance.sample(field.origin, spacing, field.dims);
+    return field;
+}
+
+Motion after(const Motion& motion, float seconds) {
+    Motion later = motion;
+    later.position += seconds * motion.velocity;
+    const float angle = seconds * glm::length(motion.spin);
+    if (angle > 0)
+        later.rotation = mat3(glm::rotate(mat4(1), angle, glm::normalize(motion.spin))) * motion.rotation;
+    return later;
+}
+
+}  // namespace palpate

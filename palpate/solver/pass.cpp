@@ -1,0 +1,131 @@
+#include "palpate/solver/pass.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+// A frame in which a shape is simple, and its size there.
+struct Frame {
+    vec3 origin = vec3(0);
+    mat3 axes = mat3(1);
+    int kind = round_box;
+    vec4 size = vec4(0);
+    float thickness = 0;
+};
+
+// Three axes at right angles, the second of them along y.
+mat3 axes_around(vec3 y) {
+    const vec3 x = glm::normalize(glm::cross(y, std::abs(y.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 0, 1)));
+    return {x, y, glm::cross(x, y)};
+}
+
+Frame frame(const Plane& plane) {
+    return {plane.normal * plane.offset, axes_around(plane.normal), half_space};
+}
+Frame frame(const Sphere& sphere) {
+    return {sphere.centre, mat3(1), round_box, vec4(0, 0, 0, sphere.radius)};
+}
+Frame frame(const Capsule& capsule) {
+    const vec3 along = capsule.to - capsule.from;
+    const float length = glm::length(along);
+    return {0.5f * (capsule.from + capsule.to), length > 0 ? axes_around(along / length) : mat3(1), round_box,
+            vec4(0, length / 2, 0, capsule.radius)};
+}
+Frame frame(const Box& box) {
+    return {box.centre, {box.axes[0], box.axes[1], box.axes[2]}, round_box, vec4(box.half, box.rounding)};
+}
+Frame frame(const Polygon& polygon) { return {.kind = palpate::polygon, .thickness = polygon.thickness}; }
+Frame frame(const DistanceField&) { return {.kind = field}; }
+
+Obstacle obstacle(const Collider& collider, const Motion& motion) {
+    const Frame shape = std::visit([](const auto& s) { return frame(s); }, collider.shape);
+    const vec3 origin = motion.position + motion.rotation * shape.origin;
+    const mat3 axes = motion.rotation * shape.axes;
+    auto row = [&](vec3 axis) { return vec4(axis, -glm::dot(axis, origin)); };
+    const vec3 velocity = motion.velocity + glm::cross(motion.spin, origin - motion.position);
+    return {row(axes[0]),
+            row(axes[1]),
+            row(axes[2]),
+            shape.size,
+            vec4(origin, shape.thickness + collider.margin),
+            vec4(velocity, collider.friction),
+            vec4(motion.spin, 0),
+            ivec4(shape.kind, 0, 0, 0)};
+}
+
+}  // namespace
+
+Pass make_pass(const Body& body, const Simulation& simulation) {
+    Pass pass{};
+    pass.gravity = vec4(simulation.gravity, 0);
+    pass.wind.w = simulation.air;
+    pass.damping = body.damping;
+    pass.link_damping = body.link_damping;
+    pass.fan = body.fan;
+    if (const auto* stencil = std::get_if<Stencil>(&body.springs)) {
+        pass.links = int(stencil->links.size());
+        assert(stencil->links.size() <= std::size(pass.spring));
+        for (int l = 0; l < pass.links; ++l) {
+            const Link& link = stencil->links[l];
+            pass.spring[l] = {0, link.stiffness, link.stiffness * link.rest, 0};
+        }
+    } else {
+        pass.links = std::get<Table>(body.springs).width;
+    }
+    return pass;
+}
+
+void place_tools(Pass& pass, const Influences& influences, double time) {
+    assert(influences.presses.size() <= std::size(pass.tip) &&
+           influences.drags.size() <= std::size(pass.drag));
+    pass.tips = int(influences.presses.size());
+    for (int i = 0; i < pass.tips; ++i) {
+        const Press& press = influences.presses[i];
+        pass.tip[i] = vec4(press.centre + float(time) * press.velocity, press.radius);
+        pass.tip_push[i] = vec4(pressure_per_metre(press), 0, 0, 0);
+    }
+    pass.drags = int(influences.drags.size());
+    for (int i = 0; i < pass.drags; ++i) {
+        const Drag& drag = influences.drags[i];
+        pass.drag[i] = vec4(drag.to + float(time) * drag.velocity, drag.stiffness);
+    }
+}
+
+void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time) {
+    assert(influences.colliders.empty() || influences.colliders.size() == simulation.colliders.size());
+    assert(simulation.colliders.size() <= std::size(pass.obstacle));
+    pass.obstacles = int(simulation.colliders.size());
+    int corners = 0, fields = 0;
+    for (int i = 0; i < pass.obstacles; ++i) {
+        const Collider& collider = simulation.colliders[i];
+        const Motion motion = influences.colliders.empty() ? Motion{} : influences.colliders[i];
+        pass.obstacle[i] = obstacle(collider, after(motion, float(time)));
+        ivec4& kind = pass.obstacle[i].kind;
+        if (const auto* polygon = std::get_if<Polygon>(&collider.shape)) {
+            kind.y = corners;
+            kind.z = int(3 * polygon->triangles.size());
+            corners += kind.z;
+        }
+        if (std::holds_alternative<DistanceField>(collider.shape)) kind.y = fields++;
+    }
+}
+
+std::vector<vec3> polygon_corners(const Simulation& simulation) {
+    std::vector<vec3> corners;
+    for (const Collider& collider : simulation.colliders)
+        if (const auto* polygon = std::get_if<Polygon>(&collider.shape))
+            for (const auto& triangle : polygon->triangles)
+                corners.insert(corners.end(), triangle.begin(), triangle.end());
+    return corners;
+}
+
+std::vector<const DistanceField*> distance_fields(const Simulation& simulation) {
+    std::vector<const DistanceField*> fields;
+    for (const Collider& collider : simulation.colliders)
+        if (const auto* one = std::get_if<DistanceField>(&collider.shape)) fields.push_back(one);
+    return fields;
+}
+
+}  // namespace palpate

@@ -1,0 +1,29 @@
+#pragma once
+#include "palpate/body/body.h"
+#include "palpate/body/influences.h"
+#include "palpate/body/simulation.h"
+
+#include <vector>
+
+// What every backend shares on the host: the pass, as its kernels read it.
+
+namespace palpate {
+
+#include "palpate/solver/pass.inl"
+
+/// A pass with all that stays the same for a body: gravity, damping, the springs of its stencil.
+Pass make_pass(const Body& body, const Simulation& simulation);
+
+/// Puts tips and drags where they are `time` seconds into the call.
+void place_tools(Pass& pass, const Influences& influences, double time);
+
+/// Puts the obstacles where they are `time` seconds into the call.
+void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time);
+
+/// The corners of all polygons in a row, three a triangle, as Obstacle::kind counts them.
+std::vector<vec3> polygon_corners(const Simulation& simulation);
+
+/// The distance fields in their order.
+std::vector<const DistanceField*> distance_fields(const Simulation& simulation);
+
+}  // namespace palpate
