@@ -5,6 +5,7 @@
 //   FN, UNROLL         what stands before a function, and before the loop over links
 //   Real, Real3, Real4 a number, a vector: of one node, or of as many nodes as a SIMD register holds
 //   select(c, a, b)    a where c holds, b elsewhere
+//   any_node(c)        whether c holds for any of the nodes at hand
 //   LINKS              how many links a node has
 //   pass               the Pass: what all nodes share
 //   toward(p, l)       from p to this node's neighbour along link l, m
@@ -92,20 +93,19 @@ FN Real3 drag_force(Real3 position, int i) {
 
 // The air presses with half its density x the square of its speed through the surface: on both sides of a sheet, on
 // a solid from the windward side. Along the surface it slides past.
-FN Real3 wind_force(Node node, Real3 outward) {
-    Real3 normal = unit(outward);
+FN Real3 wind_force(Node node) {
+    Real3 normal = unit(springs(node.position).outward);
     Real through = dot(xyz(pass.wind) - node.velocity, normal);
     if (pass.fan == 0) through = min(through, Real(0.0f));
     return (Real(0.5f * pass.wind.w) * area() * max(through, -through) * through) * normal;
 }
 
 FN Real3 acceleration(Node node) {
-    Pull pull = springs(node.position);
-    Real3 force = pull.force;
+    Real3 force = springs(node.position).force;
     if (pass.link_damping > 0.0f) force += dashpots(node);
     for (int i = 0; i < pass.tips; ++i) force += tip_force(node.position, i);
     for (int i = 0; i < pass.drags; ++i) force += drag_force(node.position, i);
-    if (pass.wind.w > 0.0f) force += wind_force(node, pull.outward);
+    if (pass.wind.w > 0.0f) force += wind_force(node);
     return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;
 }
 

@@ -77,6 +77,7 @@ FN Contact contact_with(Obstacle o, Real3 was, Real3 now) {
 // as friction x the speed it lost inward, and as much way as friction x the depth: the same force, seen twice.
 FN Node push_out(Node node, Real3 was, Obstacle o) {
     Contact contact = contact_with(o, was, node.position);
+    if (!any_node(contact.depth > Real(0.0f))) return node;
     Real3 normal = contact.normal, surface = surface_velocity(o, node.position);
     Real3 speed = node.velocity - surface, way = node.position - was - Real(pass.duration) * surface;
     Real inward = min(dot(speed, normal), Real(0.0f)), friction = Real(o.velocity.w), one = Real(1.0f);

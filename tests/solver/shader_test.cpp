@@ -16,7 +16,7 @@ const std::string folder = PALPATE_SOURCE_DIR "/palpate/solver/";
 std::string physics() {
     return "#define FN\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define Real3 "
            "vec3\n#define Real4 vec4\n"
-           "#define select(c, a, b) ((c) ? (a) : (b))\n" +
+           "#define select(c, a, b) ((c) ? (a) : (b))\n#define any_node(c) (c)\n" +
            read_text(folder + "pass.inl") + "layout(std140, binding = 0) uniform Uniforms { Pass pass; };\n";
 }
 

@@ -38,13 +38,8 @@ struct ReferenceNode {
     const Tie* ties;  // this node's springs
     Real outside_area, outside_cover;
 
-    // Where there is no spring its end is the node itself, and it pulls at nothing.
-    Real3 toward(Real3 p, int l) const {
-        return ties[l].to < 0 ? Real3(0) : now.positions[std::size_t(ties[l].to)] - p;
-    }
-    Real3 passing(Real3 v, int l) const {
-        return ties[l].to < 0 ? Real3(0) : now.velocities[std::size_t(ties[l].to)] - v;
-    }
+    Real3 toward(Real3 p, int l) const { return now.positions[std::size_t(ties[l].to)] - p; }
+    Real3 passing(Real3 v, int l) const { return now.velocities[std::size_t(ties[l].to)] - v; }
     Real share(int l) const { return ties[l].share; }
     Real stiffness(int l) const { return ties[l].stiffness; }
     Real tension(int l) const { return ties[l].stiffness * ties[l].rest; }
@@ -63,6 +58,7 @@ struct ReferenceNode {
     static Real max(Real a, Real b) { return a > b ? a : b; }
     static Real min(Real a, Real b) { return a < b ? a : b; }
     static Real inversesqrt(Real a) { return 1 / std::sqrt(a); }
+    static bool any_node(bool c) { return c; }
     static Real select(bool c, Real a, Real b) { return c ? a : b; }
     static Real3 select(bool c, Real3 a, Real3 b) { return c ? a : b; }
 
@@ -93,6 +89,9 @@ class Reference final : public Solver {
                   polygon_corners(simulation_),
                   distance_fields(simulation_),
                   {}};
+        // Where there is no spring its end is the node itself, and it pulls at nothing.
+        for (std::size_t t = 0; t < world_.springs.ties.size(); ++t)
+            if (int& to = world_.springs.ties[t].to; to < 0) to = int(t) / world_.springs.width;
         for (vec3 p : body.positions) now_.positions.push_back(Real3(p));
         now_.velocities.assign(body.count(), Real3(0));
         first_ = second_ = sum_ = now_;
@@ -268,7 +267,7 @@ class Reference final : public Solver {
         for (std::size_t i = 0; i < body_.count(); ++i) {
             if (!std::isfinite(glm::dot(now_.positions[i], now_.positions[i]))) return true;
             for (const Tie& tie : world_.springs.of(i)) {
-                if (tie.to < 0 || !(tie.share * tie.stiffness > 0)) continue;
+                if (!(tie.share * tie.stiffness > 0)) continue;
                 const Real3 along = now_.positions[std::size_t(tie.to)] - now_.positions[i];
                 const Real longest = 10 * Real(tie.rest);
                 if (!(glm::dot(along, along) <= longest * longest)) return true;
