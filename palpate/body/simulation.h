@@ -43,7 +43,7 @@ struct Simulation {
     bool force = false;                 // accept a step above the bound
     vec3 gravity = vec3(0, -9.81f, 0);  // m/s²
     float air = 0;  // kg/m³: how dense the air is that moves, or stands; 1.2, or 0 for none
-    std::vector<Collider> colliders;  // at most 16, with at most 1,000 triangles in all
+    std::vector<Collider> colliders = {};  // at most 16, with at most 1,000 triangles in all
     // The strongest to come, for the stability bound:
     float contact = 0;        // Pa/m, of all presses together (pressure_per_metre)
     float pull = 0;           // N/m, of all drags together

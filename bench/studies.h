@@ -1,0 +1,52 @@
+#pragma once
+#include "palpate/body/simulation.h"
+
+#include <vector>
+
+// Measurements of the physics against what theory says. The tests hold them to bounds; palpate-tables prints
+// them for docs/results.md. All run on the reference solver in double.
+
+namespace palpate::studies {
+
+/// The kinds of damping that a chain or a lattice is studied with.
+struct Damping {
+    const char* name;
+    float of_nodes;  // 1/s
+    float of_links;  // s
+};
+inline constexpr Damping dampings[] = {
+    {"none", 0, 0}, {"of velocities", 4, 0}, {"along the springs", 0, 4e-4f}};
+
+/// log2 of how much smaller the error gets when the step is halved, from `steps` to 2 · `steps`, of a chain
+/// of 9 coupled nodes that swings from one end.
+double order(Integrator integrator, const Damping& damping, int steps);
+
+/// The longest stable step of a lattice whose nodes are slightly shaken, s.
+struct Limit {
+    double measured;   // by bisection: a step longer by half a percent lets the motion grow
+    double predicted;  // longest_step()
+    double frequency;  // rad/s, the highest of the lattice
+};
+Limit stability_limit(Integrator integrator, const Damping& damping);
+
+/// How much the fastest motion of that lattice grows in a step, less 1; `step` in units of 1/frequency.
+struct Growth {
+    double measured, predicted;
+};
+Growth growth_per_step(Integrator integrator, double step);
+
+/// The speed of a plane pulse inside a lattice over √(3k/(hρ)), or of a shear pulse over √(k/(hρ)).
+double pulse_speed(bool shear);
+
+/// The sag of a square cantilever under its own weight, so many cells thick and ten times as long, over
+/// Timoshenko's.
+double cantilever_sag(int cells);
+
+/// The least and the largest energy over the first in a million undamped steps of a lattice.
+struct Swing {
+    double least, largest;
+    double drift;  // of the mean, from the first tenth to the last
+};
+Swing energy_swing(Integrator integrator, int steps);
+
+}  // namespace palpate::studies
