@@ -49,4 +49,7 @@ struct Swing {
 };
 Swing energy_swing(Integrator integrator, int steps);
 
+/// How well each mapping carries a surface, as Markdown on standard output (bench/embedding.cpp).
+void print_mappings();
+
 }  // namespace palpate::studies

@@ -1,5 +1,5 @@
 // Prints the tables of docs/results.md that compare measurements with theory:
-//   palpate-tables [orders] [stability] [waves] [cantilever] [energy]      all, if none is named
+//   palpate-tables [orders] [stability] [waves] [cantilever] [energy] [mappings]    all, if none is named
 #include "bench/studies.h"
 
 #include <fmt/format.h>
@@ -80,11 +80,9 @@ void energies() {
 }  // namespace
 
 int main(int count, char** arguments) {
-    const std::vector<std::pair<std::string, void (*)()>> tables = {{"orders", orders},
-                                                                    {"stability", stability},
-                                                                    {"waves", waves},
-                                                                    {"cantilever", cantilever},
-                                                                    {"energy", energies}};
+    const std::vector<std::pair<std::string, void (*)()>> tables = {
+        {"orders", orders},         {"stability", stability}, {"waves", waves},
+        {"cantilever", cantilever}, {"energy", energies},     {"mappings", print_mappings}};
     const std::vector<std::string> wanted(arguments + 1, arguments + count);
     for (const std::string& name : wanted)
         if (std::none_of(tables.begin(), tables.end(), [&](const auto& t) { return t.first == name; })) {

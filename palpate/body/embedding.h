@@ -10,19 +10,26 @@
 
 namespace palpate {
 
-/// How a fine surface follows the nodes.
+/// How a fine surface follows the nodes. All but `trilinear` hang it on the outside of the body: the hull of
+/// its cells, or its faces.
 enum class Mapping {
-    automatic,     // the best that the body allows: trilinear in a lattice
-    trilinear,     // in a cell, by its eight corners; normals by the gradient of the deformation
-    constant,      // on a triangle of nodes, in the triangle's own basis (2005, eq. 4 to 7)
-    interpolated,  // the same, with the basis turned to the nodes' approximate normals (2005, eq. 8)
+    automatic,      // what measures best (docs/architecture.md): trilinear where there are cells, else frames
+    one_to_one,     // on the nearest node, as it is, with its approximate normal (2005, section 3.2)
+    constant,       // on a triangle of nodes, in the triangle's own basis (eq. 4 to 7)
+    interpolated,   // the same, with the basis turned to the nodes' approximate normals (eq. 8)
+    normal_offset,  // the same, but off the triangle along the interpolated normal only (section 3.5)
+    trilinear,      // in a cell, by its eight corners and the gradient of the deformation
+    frames,         // on a triangle, by a frame of each node that its neighbours stretch and turn
 };
 
 inline std::span<const Named<Mapping>> names(Mapping) {
     static constexpr Named<Mapping> all[] = {{Mapping::automatic, "automatic"},
-                                             {Mapping::trilinear, "trilinear"},
+                                             {Mapping::one_to_one, "one-to-one"},
                                              {Mapping::constant, "constant"},
-                                             {Mapping::interpolated, "interpolated"}};
+                                             {Mapping::interpolated, "interpolated"},
+                                             {Mapping::normal_offset, "normal-offset"},
+                                             {Mapping::trilinear, "trilinear"},
+                                             {Mapping::frames, "frames"}};
     return all;
 }
 
@@ -42,25 +49,61 @@ struct OnTriangle {
     float curvature;  // how far the basis turns to the approximate normals: 0 constant, 1 interpolated
 };
 
+/// What a neighbour says about a node's frame.
+struct Spoke {
+    int to;
+    vec3 pull;  // 1/m: the neighbour's way from the node, times this, is its part of the gradient
+};
+
+/// The gradient of the deformation at a node, by least squares over its springs: their rest vectors and the
+/// inverse of their moments are in the pulls.
+struct Frame {
+    int node;
+    int spokes_end, faces_end;  // where its own end in the lists; they begin where the last frame's end
+    vec3 normal_pull;  // of the faces' normal, in a sheet: its springs do not say where thickness goes
+    mat3 rest;         // what stays as at rest since nothing tells: nearly always zero
+};
+
+/// A vertex on the frames of three nodes: each carries it along, from the node's place by the frame times the
+/// arm, and the weights say how much.
+struct OnFrames {
+    std::array<int, 3> frames;
+    vec3 weights;
+    std::array<vec3, 3> arms;  // to the vertex, from half way between each node and the place under it, m
+    vec3 normal;               // of the surface at rest, unit
+};
+
+struct Framed {
+    std::vector<Frame> frames;
+    std::vector<Spoke> spokes;
+    std::vector<std::array<int, 3>> faces;  // round the nodes of sheets
+    std::vector<OnFrames> vertices;
+};
+
 /// How each vertex of a surface hangs on the nodes of a body. Plain data; works with any source of node
 /// positions.
 struct Embedding {
-    std::variant<std::vector<InCell>, std::vector<OnTriangle>> vertices;
+    std::variant<std::vector<InCell>, std::vector<OnTriangle>, Framed> vertices;
+    std::vector<vec4> tangents;  // at rest, in the same basis as the normals; empty if the mesh has none
 };
 
-/// Hangs a surface, with normals, on a body at rest. Each vertex goes to the nearest cell or hull triangle as
-/// seen from inside the surface, so that it does not stick to the other wall of a narrow gap. Throws Error if
-/// the body has no cells to hang the surface in.
+/// Hangs a surface on a body at rest; normals are computed where it has none. Each vertex goes to the nearest
+/// cell or triangle as seen from inside the surface, so that it does not stick to the other wall of a narrow
+/// gap. Throws Error if the body has neither cells nor faces, or if trilinear is asked for and it has no
+/// cells.
 Embedding embed(const Mesh& surface, const Body& body, Mapping mapping = Mapping::automatic);
 
-/// Positions and unit normals of the surface for the nodes' current places. Both outputs are resized.
-/// Collapsed triangles and cells give finite positions and unit normals all the same.
+/// Positions and unit normals of the surface for the nodes' current places, and if asked its tangents: unit,
+/// at right angles to the normals, their handedness kept. Outputs are resized; tangents are empty if the mesh
+/// had none. The nodes' approximate normals are used by one-to-one, interpolated and normal-offset; the
+/// others need none. Collapsed triangles and cells give finite positions and unit normals all the same.
 void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
-            std::vector<vec3>& normals);
+            std::vector<vec3>& normals, std::vector<vec4>* tangents = nullptr);
 
 /// The approximate normal of every node (2005, eq. 3): the sum of the unit vectors from its neighbours, each
 /// by its link's share. Not normalised; short where the neighbours surround the node evenly and it means
-/// little.
+/// little. A sheet has neighbours on no side: there it is the unit normal of the fan of springs round the
+/// node.
 std::vector<vec3> approximate_normals(const Body& body, std::span<const vec3> positions);
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "palpate/mesh/mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -86,6 +87,37 @@ void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3
     }
 }
 
+void compute_tangents(Mesh& mesh) {
+    assert(mesh.uvs.size() == mesh.positions.size());
+    if (mesh.normals.size() != mesh.positions.size()) compute_normals(mesh);
+    std::vector<vec3> along_u(mesh.positions.size(), vec3(0)), along_v = along_u;
+    for (uvec3 t : mesh.triangles) {
+        const vec3 ab = mesh.positions[t.y] - mesh.positions[t.x];
+        const vec3 ac = mesh.positions[t.z] - mesh.positions[t.x];
+        const vec2 uv_ab = mesh.uvs[t.y] - mesh.uvs[t.x], uv_ac = mesh.uvs[t.z] - mesh.uvs[t.x];
+        // The face's gradients of position over u and v; of the area in the texture only the sign counts.
+        const float area = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
+        const float sign = area > 0 ? 1.0f : area < 0 ? -1.0f : 0.0f;
+        const vec3 u = sign * unit(ab * uv_ac.y - ac * uv_ab.y), v = sign * unit(ac * uv_ab.x - ab * uv_ac.x);
+        for (int k = 0; k < 3; ++k) {
+            const vec3 corner = mesh.positions[t[k]];
+            const float weight = angle(unit(mesh.positions[t[(k + 1) % 3]] - corner),
+                                       unit(mesh.positions[t[(k + 2) % 3]] - corner));
+            along_u[t[k]] += weight * u;
+            along_v[t[k]] += weight * v;
+        }
+    }
+    mesh.tangents.clear();
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const vec3 n = mesh.normals[i];
+        vec3 tangent = unit(along_u[i] - glm::dot(along_u[i], n) * n);
+        if (tangent == vec3(0))
+            tangent = unit(glm::cross(n, std::abs(n.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0)));
+        const float handedness = glm::dot(glm::cross(n, tangent), along_v[i]) < 0 ? -1.0f : 1.0f;
+        mesh.tangents.emplace_back(tangent, handedness);
+    }
+}
+
 void rotate(Mesh& mesh, vec3 degrees) {
     const dvec3 angle = glm::radians(dvec3(degrees));
     const dvec3 c = glm::cos(angle), s = glm::sin(angle);
@@ -96,6 +128,7 @@ void rotate(Mesh& mesh, vec3 degrees) {
     const mat3 turn(about_z * about_y * about_x);
     for (vec3& p : mesh.positions) p = turn * p;
     for (vec3& n : mesh.normals) n = turn * n;
+    for (vec4& t : mesh.tangents) t = vec4(turn * vec3(t), t.w);
 }
 
 }  // namespace palpate

@@ -11,6 +11,9 @@ struct Mesh {
     std::vector<vec3> positions;   // m
     std::vector<vec3> normals;     // unit, one a vertex; or empty
     std::vector<uvec3> triangles;  // indices into positions
+    std::vector<vec2> uvs = {};    // texture coordinates, one a vertex; or empty
+    std::vector<vec4> tangents =
+        {};  // along the texture's u, unit; w: 1, or -1 where it is mirrored; or empty
 };
 
 /// What a file's numbers mean. Inside Palpate everything is in metres.
@@ -34,6 +37,12 @@ void compute_normals(Mesh& mesh);
 /// The same for moved vertices of the same triangles, into `normals` (resized).
 void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3>& triangles,
                      std::vector<vec3>& normals);
+
+/// Fills mesh.tangents from its texture coordinates: at each vertex the mean of its faces' ways along u, each
+/// by the face's angle there, brought to right angles with the normal; w says whether v runs along the normal
+/// × the tangent (1) or against it (-1), as most of its faces say. A vertex whose faces have no area in the
+/// texture gets any tangent. Where a texture meets its own mirror image, vertices should be two.
+void compute_tangents(Mesh& mesh);
 
 /// Turns by degrees about x, then y, then z, about the world's origin. (-90, 0, 0) takes z up to y up.
 void rotate(Mesh& mesh, vec3 degrees);

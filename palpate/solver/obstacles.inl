@@ -86,12 +86,14 @@ FN Node push_out(Node node, Real3 was, Obstacle o) {
     Real slowed = min(-inward * friction * inversesqrt(squared(speed)), one);
     Real held_back = min(contact.depth * friction * inversesqrt(squared(way)), one);
     Real touches = select(contact.depth > Real(0.0f), one, Real(0.0f));
-    node.velocity -= touches * (inward * normal + slowed * speed);
+    if (pass.last > 0) node.velocity -= touches * (inward * normal + slowed * speed);
     node.position += touches * (contact.depth * normal - held_back * way);
     return node;
 }
 
-// The obstacles, at the end of a step that began at `was`.
+// The obstacles, at the end of a pass of a step that began at `was`. They move nodes in each pass, else the neighbours
+// of a node that rests on something would see it sink in between; they stop them in the last one, else what stopped
+// in between would not be found to have come in.
 FN Node collide(Node node, Real3 was) {
     Node pushed = node;
     for (int i = 0; i < pass.obstacles; ++i) pushed = push_out(pushed, was, pass.obstacle[i]);

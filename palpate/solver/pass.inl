@@ -29,14 +29,16 @@ struct Pass {
     float drift;       // s: ... and the positions,
     float lead;        // with the velocities from before the pass (0), with the new ones (1), or between
     float part;        // s: the weight of this pass in the sum over a step
-    float duration;    // s, of the step
+    float duration;    // s, from where the step began to where this pass ends
     float damping;     // 1/s, of velocities
     float link_damping;  // s: a spring resists its stretching with this x stiffness
     int   links;       // of a node
     int   fan;         // the first so many of them go round it in a sheet
     int   tips;
     int   drags;
-    int   obstacles;   // none except in the last pass of a step
+    int   obstacles;
+    int   last;        // 1 in the last pass of a step, else 0
+    int   padding_1, padding_2, padding_3;
     vec4  tip[8];      // centre, radius
     vec4  tip_push[8]; // x: pressure for each metre of depth, Pa/m
     vec4  drag[8];     // where to, stiffness in N/m

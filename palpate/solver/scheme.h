@@ -21,10 +21,14 @@ struct Scheme {
     bool staggered = false;     // velocities live half a step behind positions
     bool mean_damping = false;  // damping acts on the mean of the old and the new velocity
 
-    /// s: how far a stage of a step carries velocities that are `lag` behind, so that they end up half a step
-    /// behind if staggered.
+    /// s: the time over which a stage's forces act on velocities that are `lag` behind the positions, so that
+    /// these end up half a step behind if staggered.
+    double reach(const Stage& stage, double step, double lag) const {
+        return staggered ? lag + step / 2 : stage.kick * step;
+    }
+    /// The stage's `kick`, s: that time, shortened by damping that acts on the new velocity too.
     double kick(const Stage& stage, double step, double lag, double damping) const {
-        const double way = staggered ? lag + step / 2 : stage.kick * step;
+        const double way = reach(stage, step, lag);
         const double behind = staggered ? lag : mean_damping ? way / 2 : 0;
         return way / (1 + damping * behind);
     }

@@ -97,5 +97,76 @@ TEST(Mesh, RotateKeepsShape) {
     EXPECT_LE(std::abs(volume(mesh) / before - 1), 1e-6);
 }
 
+// A sphere with longitude and latitude as texture coordinates, without its poles and seam.
+Mesh globe(bool mirrored) {
+    Mesh mesh;
+    const int across = 24, up = 12;
+    for (int j = 0; j <= up; ++j)
+        for (int i = 0; i <= across; ++i) {
+            const float u = float(i) / across, v = float(j) / up;
+            const float longitude = 6.0f * u, latitude = 2.4f * (v - 0.5f);
+            mesh.positions.push_back({std::cos(longitude) * std::cos(latitude),
+                                      std::sin(longitude) * std::cos(latitude), std::sin(latitude)});
+            mesh.uvs.push_back({mirrored ? -u : u, v});
+        }
+    mesh.normals = mesh.positions;
+    for (unsigned j = 0; j < up; ++j)
+        for (unsigned i = 0; i < across; ++i) {
+            const unsigned a = j * (across + 1) + i, b = a + 1, c = b + across + 1, d = a + across + 1;
+            mesh.triangles.push_back({a, b, c});
+            mesh.triangles.push_back({a, c, d});
+        }
+    return mesh;
+}
+
+TEST(Mesh, TangentsRunAlongTheTexture) {
+    for (bool mirrored : {false, true}) {
+        Mesh mesh = globe(mirrored);
+        compute_tangents(mesh);
+        ASSERT_EQ(mesh.tangents.size(), mesh.positions.size());
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            const vec3 east = glm::normalize(glm::cross(vec3(0, 0, 1), mesh.positions[i]));
+            const vec3 tangent(mesh.tangents[i]);
+            EXPECT_LE(glm::distance(tangent, mirrored ? -east : east), 0.15f);
+            EXPECT_LE(std::abs(glm::length(tangent) - 1), 1e-6f);
+            EXPECT_LE(std::abs(glm::dot(tangent, mesh.normals[i])), 1e-6f);
+            EXPECT_EQ(mesh.tangents[i].w, mirrored ? -1.0f : 1.0f);
+        }
+    }
+}
+
+TEST(Mesh, TangentsDoNotDependOnSizeOrOnTheTexturesScale) {
+    Mesh mesh = globe(false);
+    compute_tangents(mesh);
+    for (float size : {1e-6f, 1e6f}) {
+        Mesh other = globe(false);
+        for (vec3& p : other.positions) p *= size;
+        for (vec2& uv : other.uvs) uv *= 0.001f;
+        compute_tangents(other);
+        for (std::size_t i = 0; i < mesh.tangents.size(); ++i)
+            EXPECT_LE(glm::distance(vec3(other.tangents[i]), vec3(mesh.tangents[i])), 1e-3f) << size;
+    }
+}
+
+TEST(Mesh, TangentsWithoutATextureAreUprightAllTheSame) {
+    Mesh mesh = sphere(vec3(0), 1, 3);
+    mesh.uvs.assign(mesh.positions.size(), vec2(0.5f));
+    compute_tangents(mesh);  // makes the normals, too
+    for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+        EXPECT_LE(std::abs(glm::length(vec3(mesh.tangents[i])) - 1), 1e-6f);
+        EXPECT_LE(std::abs(glm::dot(vec3(mesh.tangents[i]), mesh.normals[i])), 1e-6f);
+    }
+}
+
+TEST(Mesh, RotateTurnsTangents) {
+    Mesh mesh = globe(false);
+    compute_tangents(mesh);
+    Mesh turned = mesh;
+    rotate(turned, {12, -34, 56});
+    compute_tangents(mesh = turned);
+    for (std::size_t i = 0; i < mesh.tangents.size(); ++i)
+        EXPECT_LE(glm::distance(mesh.tangents[i], turned.tangents[i]), 1e-5f);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -183,22 +183,22 @@ class Reference final : public Solver {
             pass.drift = float(stage.drift * step);
             pass.lead = float(stage.lead);
             pass.part = float(stage.part * step);
-            pass.duration = float(step);
             place_tools(pass, influences, time + reached * step);
-            pass.obstacles = 0;
-            if (last) place_obstacles(pass, simulation_, influences, time + step);
-            count_impulses(*at, last ? pass.kick : pass.part, stats);
+            count_impulses(*at, last ? scheme_.reach(stage, step, lag_) : stage.part * step, stats);
+            reached = last ? 1 : stage.drift;
+            pass.last = last;
+            pass.duration = float(reached * step);
+            place_obstacles(pass, simulation_, influences, time + reached * step);
             Moving<Real>& next = at == &first_ ? second_ : first_;
-            pass_over_nodes(stage.from_sum ? sum_ : now_, *at, next, last);
+            pass_over_nodes(stage.from_sum ? sum_ : now_, *at, next);
             at = &next;
-            reached = stage.drift;
         }
         if (at == &second_) std::swap(first_, second_);
         std::swap(now_, first_);
         lag_ = scheme_.staggered ? step / 2 : 0;
     }
 
-    void pass_over_nodes(const Moving<Real>& start, const Moving<Real>& at, Moving<Real>& next, bool last) {
+    void pass_over_nodes(const Moving<Real>& start, const Moving<Real>& at, Moving<Real>& next) {
         const Pass& pass = world_.pass;
         for (std::size_t i = 0; i < body_.count(); ++i) {
             At eyes = see(i, at, pass);
@@ -209,8 +209,7 @@ class Reference final : public Solver {
                 sum_.positions[i] = sum.position;
                 sum_.velocities[i] = sum.velocity;
             }
-            Node moved = eyes.integrate(load(start, i), node, change);
-            if (last) moved = eyes.collide(moved, now_.positions[i]);
+            const Node moved = eyes.collide(eyes.integrate(load(start, i), node, change), now_.positions[i]);
             next.positions[i] = moved.position;
             next.velocities[i] = moved.velocity;
         }

@@ -1,0 +1,159 @@
+#include "palpate/body/embedding_parts.h"
+
+namespace palpate {
+namespace {
+
+// The sum of the faces' normals round a node: each by its area.
+vec3 normal_round(std::span<const std::array<int, 3>> faces, std::span<const vec3> positions) {
+    vec3 sum(0);
+    for (const auto& [a, b, c] : faces)
+        sum += glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
+    return direction(sum, vec3(0));
+}
+
+// How evenly a set of vectors points all round, from their moments: the geometric mean of the three widths'
+// squares over their arithmetic mean. 1 for a ball, 0 in a plane; 0.5 where one square is a thirtieth of the
+// others.
+double roundness(const dmat3& moments) {
+    const double mean = (moments[0][0] + moments[1][1] + moments[2][2]) / 3;
+    return mean > 0 ? std::cbrt(std::max(glm::determinant(moments), 0.0)) / mean : 0;
+}
+
+class FrameMaker {
+ public:
+    FrameMaker(const Body& body, std::span<const Facet> facets)
+        : body_(body), springs_(table(body)), facets_at_(body.count()), frame_of_(body.count(), -1) {
+        for (const Facet& f : facets)
+            for (int node : f.nodes) facets_at_[node].push_back(f.nodes);
+    }
+
+    // The frame of a node; made when first asked for.
+    int frame(int node, Framed& framed) {
+        int& number = frame_of_[node];
+        if (number < 0) {
+            number = int(framed.frames.size());
+            make(node, framed);
+        }
+        return number;
+    }
+
+ private:
+    // The neighbours of a node, each with its rest vector by its share. Near ones count for much more than
+    // far ones, by the fourth power of the distance, since what those tell belongs half way to them: at a rim
+    // all of them are on one side.
+    std::vector<Spoke> neighbours(int node) const {
+        std::vector<Spoke> list;
+        auto add = [&](int to, float share) {
+            for (const Spoke& s : list)
+                if (s.to == to) return;
+            const vec3 toward = body_.positions[to] - body_.positions[node];
+            const float square = glm::dot(toward, toward);
+            if (to != node && square > 0) list.push_back({to, share / (square * square) * toward});
+        };
+        for (const Tie& tie : springs_.of(node))
+            if (tie.to >= 0 && tie.share > 0) add(tie.to, tie.share);
+        // A net's faces may have sides that are no springs.
+        if (body_.cells.empty())
+            for (const auto& corners : facets_at_[node])
+                for (int to : corners) add(to, 1);
+        return list;
+    }
+
+    void make(int node, Framed& framed) const {
+        std::vector<Spoke> spokes = neighbours(node);
+        dmat3 moments(0);
+        for (const Spoke& s : spokes) {
+            const dvec3 toward(body_.positions[s.to] - body_.positions[node]);
+            moments += glm::outerProduct(dvec3(s.pull), toward);
+        }
+        const double size = (moments[0][0] + moments[1][1] + moments[2][2]) / 3;
+        // A sheet's springs lie in a plane, or near one: there the normal of the faces makes up one more.
+        dvec3 normal(0);
+        if (body_.fan > 0 || roundness(moments) < 0.5) {
+            framed.faces.insert(framed.faces.end(), facets_at_[node].begin(), facets_at_[node].end());
+            normal = normal_round(facets_at_[node], body_.positions);
+        }
+        const dmat3 whole = moments + size * glm::outerProduct(normal, normal);
+        // So little that it only matters where nothing else is known in some direction.
+        const dmat3 inverse = glm::inverse(whole + (1e-9 * size + 1e-30) * dmat3(1));
+        for (Spoke& s : spokes) s.pull = vec3(inverse * dvec3(s.pull));
+        framed.spokes.insert(framed.spokes.end(), spokes.begin(), spokes.end());
+        framed.frames.push_back({node, int(framed.spokes.size()), int(framed.faces.size()),
+                                 vec3(size * (inverse * normal)), mat3(dmat3(1) - whole * inverse)});
+    }
+
+    const Body& body_;
+    Table springs_;
+    std::vector<std::vector<std::array<int, 3>>> facets_at_;
+    std::vector<int> frame_of_;
+};
+
+// The gradient of the deformation at each frame.
+std::vector<mat3> gradients(const Framed& framed, std::span<const vec3> positions) {
+    std::vector<mat3> all;
+    all.reserve(framed.frames.size());
+    int spoke = 0, face = 0;
+    for (const Frame& frame : framed.frames) {
+        mat3 gradient = frame.rest;
+        for (; spoke < frame.spokes_end; ++spoke) {
+            const Spoke& s = framed.spokes[spoke];
+            gradient += glm::outerProduct(positions[s.to] - positions[frame.node], s.pull);
+        }
+        const std::span round(framed.faces.data() + face, std::size_t(frame.faces_end - face));
+        face = frame.faces_end;
+        if (!round.empty()) gradient += glm::outerProduct(normal_round(round, positions), frame.normal_pull);
+        all.push_back(gradient);
+    }
+    return all;
+}
+
+// The cofactors of m times n: where the normal n goes when m is the gradient.
+vec3 cofactors(const mat3& m, vec3 n) {
+    return n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) + n.z * glm::cross(m[0], m[1]);
+}
+
+}  // namespace
+
+Framed embed_on_frames(const Mesh& surface, const Body& body) {
+    const Outside outside(body);
+    FrameMaker maker(body, outside.all());
+    Framed framed;
+    framed.vertices.reserve(surface.positions.size());
+    for (std::size_t i = 0; i < surface.positions.size(); ++i) {
+        const vec3 v = surface.positions[i];
+        const Facet& facet = outside.nearest(v, surface.normals[i]);
+        OnFrames vertex{{}, outside.weights(facet, v), {}, surface.normals[i]};
+        // The arms begin half way from a node to the place under the vertex, not at the node: then the
+        // frames together follow a curved sheet to the second order. (Whole ways bulge by as much as the flat
+        // triangle sinks.) For affine motions it is the same.
+        const vec3 foot = outside.point(facet, vertex.weights);
+        for (int k = 0; k < 3; ++k) {
+            vertex.frames[k] = maker.frame(facet.nodes[k], framed);
+            vertex.arms[k] = v - 0.5f * (body.positions[facet.nodes[k]] + foot);
+        }
+        framed.vertices.push_back(vertex);
+    }
+    return framed;
+}
+
+void deform(const Framed& framed, const Nodes& nodes, const Carried& out) {
+    const std::vector<mat3> gradient_at = gradients(framed, nodes.positions);
+    for (std::size_t i = 0; i < framed.vertices.size(); ++i) {
+        const OnFrames& vertex = framed.vertices[i];
+        vec3 position(0);
+        mat3 mean(0);
+        for (int k = 0; k < 3; ++k) {
+            const int frame = vertex.frames[k];
+            const vec3 node = nodes.positions[framed.frames[frame].node];
+            position += vertex.weights[k] * (node + gradient_at[frame] * vertex.arms[k]);
+            mean += vertex.weights[k] * gradient_at[frame];
+        }
+        out.positions[i] = position;
+        out.normals[i] = direction(cofactors(mean, vertex.normal), vertex.normal);
+        if (!out.tangents) continue;
+        const vec4 t = out.rest_tangents[i];
+        out.tangents[i] = upright(mean * vec3(t), out.normals[i], t.w);
+    }
+}
+
+}  // namespace palpate

@@ -1,0 +1,153 @@
+#pragma once
+// What the parts of embedding.cpp share.
+#include "palpate/body/embedding.h"
+#include "palpate/mesh/triangle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+/// The unit vector along v, or `otherwise` where v has no direction.
+inline vec3 direction(vec3 v, vec3 otherwise) {
+    const float length = glm::length(v);
+    return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
+}
+
+inline vec3 any_across(vec3 n) { return glm::cross(n, std::abs(n.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0)); }
+
+/// A tangent brought to right angles with the normal that it has now; its handedness stays.
+inline vec4 upright(vec3 tangent, vec3 normal, float handedness) {
+    const vec3 across = tangent - glm::dot(tangent, normal) * normal;
+    return {direction(across, direction(any_across(normal), vec3(1, 0, 0))), handedness};
+}
+
+/// A triangle of a body's outside.
+struct Facet {
+    std::array<int, 3> nodes;  // counter-clockwise seen from outside
+    vec3 normal;               // at rest
+};
+
+/// The hull of a body's cells, or where it has none its faces.
+std::vector<Facet> facets(const Body& body);
+
+/// Boxes sorted into a grid, to find the best one near a point.
+class Nearby {
+ public:
+    /// Of no boxes at all nothing may be asked.
+    explicit Nearby(std::span<const Bounds> boxes);
+
+    /// The box with the least cost(index, least), which is never below the distance from the point to that
+    /// box. `least`: that of the best so far; where a box cannot be better, any larger cost will do.
+    template <class Cost>
+    int best(vec3 point, Cost cost) const {
+        const ivec3 centre = bucket_of(point);
+        const ivec3 span = glm::max(centre, dims_ - 1 - centre);
+        const int last = std::max({span.x, span.y, span.z});
+        int best = 0;
+        float least = std::numeric_limits<float>::max();
+        for (int reach = 0; reach <= last && float(reach - 1) * size_ < least; ++reach)
+            shell(centre, reach, [&](ivec3 bucket) {
+                const std::size_t at = slot(bucket);
+                for (int i = begins_[at]; i < begins_[at + 1]; ++i)
+                    if (const float c = cost(items_[i], least); c < least) {
+                        least = c;
+                        best = items_[i];
+                    }
+            });
+        return best;
+    }
+
+ private:
+    // The bucket that a point is in, or the nearest to it.
+    ivec3 bucket_of(vec3 point) const {
+        return ivec3(glm::clamp((point - origin_) / size_, vec3(0), vec3(dims_ - 1)));
+    }
+    std::size_t slot(ivec3 b) const { return (std::size_t(b.z) * dims_.y + b.y) * dims_.x + b.x; }
+
+    // The buckets at exactly this distance from the centre, counting diagonals as one.
+    template <class Visit>
+    void shell(ivec3 centre, int reach, Visit visit) const {
+        const ivec3 low = glm::max(centre - reach, ivec3(0)), high = glm::min(centre + reach, dims_ - 1);
+        for (int z = low.z; z <= high.z; ++z)
+            for (int y = low.y; y <= high.y; ++y) {
+                const bool face = std::abs(z - centre.z) == reach || std::abs(y - centre.y) == reach;
+                for (int x = low.x; x <= high.x; ++x)
+                    if (face || std::abs(x - centre.x) == reach) visit(ivec3(x, y, z));
+            }
+    }
+    template <class Visit>
+    void for_each_bucket(const Bounds& box, Visit visit) const;
+
+    vec3 origin_;
+    float size_;  // of a bucket: about that of the boxes
+    ivec3 dims_;
+    std::vector<int> begins_, items_;  // of each bucket, where its items begin; the items
+};
+
+/// The outside of a body at rest, and where on it a vertex belongs.
+class Outside {
+ public:
+    explicit Outside(const Body& body);
+
+    /// The best facet for a vertex v with normal n, by distance(facet, least), with `least` as above; never
+    /// below the distance from v to that facet.
+    template <class Distance>
+    const Facet& best(vec3 v, vec3 n, Distance distance) const {
+        return facets_[nearby_.best(v, [&](int i, float least) {
+            // A triangle that faces away from the vertex's own side belongs to the other wall of a gap: it
+            // counts as two cells further off. A sheet is both walls.
+            const bool wrong_side = body_.fan == 0 && !(glm::dot(n, facets_[i].normal) > 0);
+            const float further = wrong_side ? 2 * body_.spacing : 0;
+            return distance(facets_[i], least - further) + further;
+        })];
+    }
+    const Facet& nearest(vec3 v, vec3 n) const;
+
+    /// Weights of the nearest place on a facet.
+    vec3 weights(const Facet& facet, vec3 v) const {
+        const auto [a, b, c] = facet.nodes;
+        return nearest_weights(v, body_.positions[a], body_.positions[b], body_.positions[c]);
+    }
+    vec3 point(const Facet& facet, vec3 weights) const {
+        const auto [a, b, c] = facet.nodes;
+        return weights.x * body_.positions[a] + weights.y * body_.positions[b] +
+               weights.z * body_.positions[c];
+    }
+    float distance(const Facet& facet, vec3 v) const {
+        return glm::distance(point(facet, weights(facet, v)), v);
+    }
+    const std::vector<Facet>& all() const { return facets_; }
+
+ private:
+    const Body& body_;
+    std::vector<Facet> facets_;
+    Nearby nearby_;
+};
+
+// The mappings, each with its way to hang a surface (which has normals) and to place a vertex.
+
+std::vector<InCell> embed_in_cells(const Mesh& surface, const Body& body);
+std::vector<OnTriangle> embed_on_triangles(const Mesh& surface, const Body& body, Mapping mapping);
+Framed embed_on_frames(const Mesh& surface, const Body& body);
+
+/// Tangents of the surface in the bases of the vertices at rest.
+std::vector<vec4> tangents_in(std::span<const OnTriangle> vertices, const Body& body,
+                              const std::vector<vec4>& tangents);
+
+/// Where deform() writes.
+struct Carried {
+    std::vector<vec3>& positions;
+    std::vector<vec3>& normals;
+    std::span<const vec4> rest_tangents;
+    vec4* tangents;  // null: not asked for
+};
+void deform(const std::vector<InCell>& vertices, const Nodes& nodes, const Carried& out);
+void deform(const std::vector<OnTriangle>& vertices, const Nodes& nodes, const Carried& out);
+void deform(const Framed& framed, const Nodes& nodes, const Carried& out);
+
+}  // namespace palpate

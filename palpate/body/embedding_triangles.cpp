@@ -1,0 +1,177 @@
+#include "palpate/body/embedding_parts.h"
+
+namespace palpate {
+namespace {
+
+// Three unit vectors at right angles: along the triangle, out of it, and across.
+struct Basis {
+    vec3 tangent, normal, across;
+};
+
+// An approximate normal made unit; shorter where the neighbours' unit vectors cancel and leave it to chance.
+vec3 clear_direction(vec3 normal) { return normal / std::max(glm::length(normal), 0.5f); }
+
+// 2005, eq. 6 and 8, with every vector normalised (the paper's N, B and Nc are not of unit length unless the
+// triangle has a right angle). Eq. 8's order, Bc = Nc × T and Tc = Bc × Nc, is kept. A collapsed triangle
+// takes what is still defined, and the world's axes for the rest.
+Basis basis(const OnTriangle& vertex, const Nodes& nodes) {
+    const auto [a, b, c] = vertex.nodes;
+    const vec3 p = nodes.positions[a], q = nodes.positions[b], r = nodes.positions[c];
+    vec3 normal = direction(glm::cross(q - p, r - p), vec3(0));
+    if (vertex.curvature > 0) {
+        vec3 sum(0);
+        for (int k = 0; k < 3; ++k)
+            sum += vertex.weights[k] * clear_direction(nodes.normals[vertex.nodes[k]]);
+        const vec3 approximate = glm::length(sum) > 0.05f ? glm::normalize(sum) : normal;
+        normal = glm::mix(normal, approximate, vertex.curvature);
+    }
+    normal = direction(normal, vec3(0, 0, 1));
+    const vec3 along = direction(q - p, any_across(normal));
+    const vec3 across = direction(glm::cross(normal, along), direction(any_across(normal), vec3(1, 0, 0)));
+    return {glm::cross(across, normal), normal, across};
+}
+
+vec3 express(vec3 v, const Basis& b) {
+    return {glm::dot(v, b.tangent), glm::dot(v, b.normal), glm::dot(v, b.across)};
+}
+vec3 expand(vec3 v, const Basis& b) { return v.x * b.tangent + v.y * b.normal + v.z * b.across; }
+
+vec3 reference(const OnTriangle& vertex, std::span<const vec3> nodes) {
+    vec3 sum(0);
+    for (int k = 0; k < 3; ++k) sum += vertex.weights[k] * nodes[vertex.nodes[k]];
+    return sum;
+}
+
+// Hangs vertices on the outside of a body at rest.
+class Hanger {
+ public:
+    explicit Hanger(const Body& body)
+        : body_(body), outside_(body), approximate_(approximate_normals(body, body.positions)) {}
+
+    // On the nearest node: the triangle at it only lends its sides to tangents.
+    OnTriangle on_node(vec3 v, vec3 n) const {
+        const Facet& facet = outside_.best(v, n, [&](const Facet& f, float) {
+            return glm::distance(v, outside_.point(f, nearest_corner(f, v)));
+        });
+        return {facet.nodes, nearest_corner(facet, v), vec3(0), vec3(0, 1, 0), 1};
+    }
+
+    OnTriangle on_triangle(vec3 v, vec3 n, float curvature) const {
+        const Facet& facet = outside_.nearest(v, n);
+        OnTriangle vertex{facet.nodes, outside_.weights(facet, v), vec3(0), vec3(0), curvature};
+        const Basis b = basis(vertex, rest());
+        vertex.offset = express(v - reference(vertex, body_.positions), b);
+        vertex.normal = express(n, b);
+        return vertex;
+    }
+
+    // Where the interpolated normal meets the vertex. What remains aside of it, where no place of the outside
+    // has the vertex on its normal, is lost.
+    OnTriangle straight_under(vec3 v, vec3 n) const {
+        const Facet& facet = outside_.best(v, n, [&](const Facet& f, float least) {
+            if (const float near = outside_.distance(f, v); near >= least) return near;
+            const Foot at = foot(f, v);
+            return glm::distance(v, outside_.point(f, at.weights)) + 4 * at.aside;
+        });
+        const Foot at = foot(facet, v);
+        OnTriangle vertex{facet.nodes, at.weights, vec3(0, at.height, 0), vec3(0), 1};
+        vertex.normal = express(n, basis(vertex, rest()));
+        return vertex;
+    }
+
+ private:
+    Nodes rest() const { return {body_.positions, approximate_}; }
+
+    // The corner of a facet nearest to v, as weights.
+    vec3 nearest_corner(const Facet& facet, vec3 v) const {
+        vec3 far;
+        for (int k = 0; k < 3; ++k) far[k] = glm::distance(v, body_.positions[facet.nodes[k]]);
+        if (far.x <= far.y && far.x <= far.z) return {1, 0, 0};
+        return far.y <= far.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    }
+
+    // A place on a facet and how far up along the interpolated normal there; and how far the vertex is aside
+    // of that line.
+    struct Foot {
+        vec3 weights;
+        float height, aside;
+    };
+    // Lifts the facet's corners along their normals until the vertex lies in the lifted triangle: there the
+    // weights are those of the foot. How high is the root of a cubic, found by Newton's steps.
+    Foot foot(const Facet& facet, vec3 v) const {
+        dvec3 at[3], up[3];
+        for (int k = 0; k < 3; ++k) {
+            at[k] = dvec3(body_.positions[facet.nodes[k]]);
+            up[k] = dvec3(clear_direction(approximate_[facet.nodes[k]]));
+        }
+        // The volume that the vertex spans with the triangle lifted by t, and how it grows with t.
+        const dvec3 ab = at[1] - at[0], ac = at[2] - at[0], ab_up = up[1] - up[0], ac_up = up[2] - up[0];
+        auto volume = [&](double t) {
+            return glm::dot(glm::cross(ab + t * ab_up, ac + t * ac_up), dvec3(v) - at[0] - t * up[0]);
+        };
+        auto growth = [&](double t) {
+            const dvec3 b = ab + t * ab_up, c = ac + t * ac_up;
+            return glm::dot(glm::cross(ab_up, c) + glm::cross(b, ac_up), dvec3(v) - at[0] - t * up[0]) -
+                   glm::dot(glm::cross(b, c), up[0]);
+        };
+        Foot best{outside_.weights(facet, v), 0, std::numeric_limits<float>::max()};
+        double t = glm::dot(v - outside_.point(facet, best.weights), facet.normal);
+        for (int round = 0; round < 12 && best.aside > 1e-7f * body_.spacing; ++round) {
+            const vec3 lifted[] = {at[0] + t * up[0], at[1] + t * up[1], at[2] + t * up[2]};
+            const vec3 weights = nearest_weights(v, lifted[0], lifted[1], lifted[2]);
+            const OnTriangle stand{facet.nodes, weights, vec3(0), vec3(0), 1};
+            const vec3 normal = basis(stand, rest()).normal, over = v - reference(stand, body_.positions);
+            const float height = glm::dot(over, normal), aside = glm::length(over - height * normal);
+            if (aside < best.aside) best = {weights, height, aside};
+            const double slope = growth(t);
+            if (slope == 0) break;
+            t -= volume(t) / slope;
+        }
+        return best;
+    }
+
+    const Body& body_;
+    Outside outside_;
+    std::vector<vec3> approximate_;
+};
+
+}  // namespace
+
+std::vector<OnTriangle> embed_on_triangles(const Mesh& surface, const Body& body, Mapping mapping) {
+    const Hanger hanger(body);
+    std::vector<OnTriangle> vertices;
+    vertices.reserve(surface.positions.size());
+    for (std::size_t i = 0; i < surface.positions.size(); ++i) {
+        const vec3 v = surface.positions[i], n = surface.normals[i];
+        vertices.push_back(mapping == Mapping::one_to_one      ? hanger.on_node(v, n)
+                           : mapping == Mapping::normal_offset ? hanger.straight_under(v, n)
+                           : mapping == Mapping::constant      ? hanger.on_triangle(v, n, 0)
+                                                               : hanger.on_triangle(v, n, 1));
+    }
+    return vertices;
+}
+
+std::vector<vec4> tangents_in(std::span<const OnTriangle> vertices, const Body& body,
+                              const std::vector<vec4>& tangents) {
+    if (tangents.empty()) return {};
+    const std::vector<vec3> approximate = approximate_normals(body, body.positions);
+    const Nodes rest{body.positions, approximate};
+    std::vector<vec4> in_bases;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        in_bases.emplace_back(express(vec3(tangents[i]), basis(vertices[i], rest)), tangents[i].w);
+    return in_bases;
+}
+
+void deform(const std::vector<OnTriangle>& vertices, const Nodes& nodes, const Carried& out) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const OnTriangle& vertex = vertices[i];
+        const Basis b = basis(vertex, nodes);
+        out.positions[i] = reference(vertex, nodes.positions) + expand(vertex.offset, b);
+        out.normals[i] = direction(expand(vertex.normal, b), b.normal);
+        if (!out.tangents) continue;
+        const vec4 t = out.rest_tangents[i];
+        out.tangents[i] = upright(expand(vec3(t), b), out.normals[i], t.w);
+    }
+}
+
+}  // namespace palpate

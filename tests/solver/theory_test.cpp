@@ -1,0 +1,302 @@
+// What theory says of the integrators and the bodies, against what the reference solver does
+// (bench/studies.h).
+#include "bench/studies.h"
+#include "palpate/base/error.h"
+#include "palpate/body/cloth.h"
+#include "palpate/body/lattice.h"
+#include "palpate/body/select.h"
+#include "palpate/solver/reference/reference.h"
+#include "palpate/solver/solver.h"
+#include "palpate/solver/stability.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using namespace studies;
+
+constexpr Damping none = dampings[0], of_velocities = dampings[1], along_springs = dampings[2];
+
+TEST(Theory, OrdersOfConvergence) {
+    const std::pair<Integrator, int> orders[] = {
+        {Integrator::explicit_euler, 1}, {Integrator::semi_implicit_euler, 1}, {Integrator::verlet, 2},
+        {Integrator::midpoint, 2},       {Integrator::verlet_midpoint, 2},     {Integrator::rk4, 4}};
+    for (const auto& [integrator, expected] : orders)
+        for (const Damping& damping : {none, of_velocities})
+            EXPECT_LE(std::abs(order(integrator, damping, 256) - expected), 0.15)
+                << name_of(integrator) << ", damping " << damping.name;
+}
+
+// Dampers along the springs see the velocities of neighbours, which Verlet's schemes know a half step late
+// only: the whole scheme falls to order 1 there, as docs/integrators.md derives; the Runge-Kutta schemes do
+// not.
+TEST(Theory, OrdersWithDampersAlongTheSprings) {
+    const std::pair<Integrator, int> orders[] = {{Integrator::explicit_euler, 1},
+                                                 {Integrator::semi_implicit_euler, 1},
+                                                 {Integrator::midpoint, 2},
+                                                 {Integrator::rk4, 4}};
+    for (const auto& [integrator, expected] : orders)
+        EXPECT_LE(std::abs(order(integrator, along_springs, 256) - expected), 0.15) << name_of(integrator);
+    for (Integrator integrator : {Integrator::verlet, Integrator::verlet_midpoint}) {
+        EXPECT_LE(std::abs(order(integrator, along_springs, 4096) - 1), 0.15) << name_of(integrator);
+    }
+}
+
+TEST(Theory, TheStabilityBoundIsWhereItIs) {
+    for (const auto& [integrator, name] : names(Integrator{}))
+        for (const Damping& damping : dampings) {
+            const Limit limit = stability_limit(integrator, damping);
+            const bool none_at_all =
+                (integrator == Integrator::explicit_euler || integrator == Integrator::midpoint) &&
+                damping.of_nodes + damping.of_links == 0;
+            if (none_at_all)
+                EXPECT_EQ(limit.predicted, 0) << name;
+            else
+                EXPECT_LE(std::abs(limit.measured / limit.predicted - 1), 0.02)
+                    << name << ", " << damping.name;
+        }
+}
+
+// In closed form, where there is one.
+TEST(Theory, TheStabilityBoundInClosedForm) {
+    const double w = 700, c = 90, b = 3e-4;
+    auto near = [](double a, double exact) { EXPECT_LE(std::abs(a / exact - 1), 1e-4) << a << ' ' << exact; };
+    near(longest_step(Integrator::explicit_euler, w, c), c / (w * w));
+    near(longest_step(Integrator::explicit_euler, w, c, b), c / (w * w) + b);
+    near(longest_step(Integrator::semi_implicit_euler, w, 0), 2 / w);
+    near(longest_step(Integrator::semi_implicit_euler, w, c), (std::sqrt(c * c + 4 * w * w) - c) / (w * w));
+    near(longest_step(Integrator::verlet, w, c), 2 / w);
+    near(longest_step(Integrator::verlet_midpoint, w, c), 2 / w);
+    near(longest_step(Integrator::verlet, w, 0, b), std::sqrt(b * b + 4 / (w * w)) - b);
+    near(longest_step(Integrator::rk4, w, 0), std::sqrt(8.0) / w);
+    near(longest_step(Integrator::explicit_euler, 0, c), 2 / c);
+    near(longest_step(Integrator::rk4, 0, c), 2.785293563405282 / c);
+    EXPECT_EQ(longest_step(Integrator::explicit_euler, w, 0), 0);
+    EXPECT_EQ(longest_step(Integrator::midpoint, w, 0), 0);
+}
+
+TEST(Theory, WithoutDampingSomeGrowAsPredicted) {
+    for (Integrator integrator : {Integrator::explicit_euler, Integrator::midpoint}) {
+        const Growth g = growth_per_step(integrator, 0.5);
+        EXPECT_GT(g.predicted, 0.005);
+        EXPECT_LE(std::abs(g.measured / g.predicted - 1), 0.01) << name_of(integrator);
+        EXPECT_THROW(make_solver(lattice({3, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000}),
+                                 {.integrator = integrator}),
+                     Error);
+    }
+}
+
+TEST(Theory, PulsesRunAsInAnIsotropicSolid) {
+    EXPECT_LE(std::abs(pulse_speed(false) - 1), 0.03);
+    EXPECT_LE(std::abs(pulse_speed(true) - 1), 0.03);
+}
+
+// A lattice is too stiff in bending because its outer links lie at the very rim: by about 1 + 1/N² for N
+// cells.
+TEST(Theory, ACantileverSagsAsTimoshenkoSays) {
+    EXPECT_LE(std::abs(cantilever_sag(1) - 0.54), 0.03);
+    EXPECT_LE(std::abs(cantilever_sag(2) - 0.80), 0.03);
+    EXPECT_LE(std::abs(cantilever_sag(5) - 1), 0.05);
+}
+
+TEST(Theory, EnergyStaysBoundedOverAMillionSteps) {
+    for (Integrator integrator : {Integrator::verlet, Integrator::verlet_midpoint}) {
+        const Swing s = energy_swing(integrator, 1'000'000);
+        EXPECT_GE(s.least, 0.7) << name_of(integrator);
+        EXPECT_LE(s.largest, 1.4) << name_of(integrator);
+        EXPECT_LE(std::abs(s.drift), 0.002) << name_of(integrator);
+    }
+    EXPECT_LE(std::abs(energy_swing(Integrator::semi_implicit_euler, 200'000).drift), 0.02);
+}
+
+// ---- springs of a kind ----
+
+double elastic(const Body& body, const std::vector<dvec3>& positions) {
+    return energy(body, {positions, std::vector<dvec3>(body.count(), dvec3(0))}).elastic;
+}
+
+template <class Move>
+std::vector<dvec3> moved(const Body& body, Move move) {
+    std::vector<dvec3> positions;
+    for (ivec3 at : body.stencil().at) positions.push_back(move(at));
+    return positions;
+}
+
+// Each kind of spring resists its own stress, as 2012 says; and those that shall not, do not.
+TEST(Kinds, EachResistsItsOwnStress) {
+    const float h = 0.02f, k = 80;
+    const ivec2 dims(8, 7);
+    const ClothSettings only[] = {{.stiffness = {k, 0, 0}, .density = 0.2f},
+                                  {.stiffness = {0, k, 0}, .density = 0.2f},
+                                  {.stiffness = {0, 0, k}, .density = 0.2f}};
+    const double s = 0.03, turn = 0.05, lean = 0.04;
+    auto stretched = [&](ivec3 p) { return double(h) * dvec3((1 + s) * p.x, p.y, 0); };
+    // A rhombus: its sides keep their length, so do rows and columns.
+    auto sheared = [&](ivec3 p) {
+        return double(h) * dvec3(p.x + std::sin(lean) * p.y, std::cos(lean) * p.y, 0);
+    };
+    // Rolled up along x: each column turns a little further than the last, and all sides keep their length.
+    auto bent = [&](ivec3 p) {
+        dvec3 at(0, h * p.y, 0);
+        for (int i = 0; i < p.x; ++i) at += double(h) * dvec3(std::cos(turn * i), 0, std::sin(turn * i));
+        return at;
+    };
+    double stretch[3], shear[3], bending[3];
+    for (int kind = 0; kind < 3; ++kind) {
+        const Body body = cloth(dims, h, only[kind]);
+        stretch[kind] = elastic(body, moved(body, stretched));
+        shear[kind] = elastic(body, moved(body, sheared));
+        bending[kind] = elastic(body, moved(body, bent));
+    }
+    auto half_k = [&](int springs, double extension) { return 0.5 * k * springs * extension * extension; };
+    const int rows = dims.y, columns = dims.x;
+    EXPECT_LE(std::abs(stretch[0] / half_k((columns - 1) * rows, s * h) - 1), 1e-5);
+    const double long_way = std::sqrt(2 + 2 * std::sin(lean)) - std::sqrt(2.0),
+                 short_way = std::sqrt(2 - 2 * std::sin(lean)) - std::sqrt(2.0);
+    const int squares = (columns - 1) * (rows - 1);
+    EXPECT_LE(std::abs(shear[1] / (half_k(squares, long_way * h) + half_k(squares, short_way * h)) - 1),
+              1e-5);
+    EXPECT_LE(std::abs(bending[2] / half_k((columns - 2) * rows, 2 * h * (1 - std::cos(turn / 2))) - 1),
+              1e-3);
+    for (int other : {0, 2}) EXPECT_LE(shear[other], 1e-9 * shear[1]);
+    for (int other : {0, 1}) EXPECT_LE(bending[other], 1e-9 * stretch[0]);
+}
+
+TEST(Kinds, TheVolumeOf2012Has32Springs) {
+    const Body body = lattice({5, 5, 5}, 0.01f, SpringKinds{100, 50, 20}, {.mass = 1});
+    const Table springs = table(body);
+    EXPECT_EQ(springs.width, 32);
+    int whole = 0;
+    double stiffness = 0;
+    for (const Tie& tie : springs.of(2 * 25 + 2 * 5 + 2)) whole += tie.share == 1, stiffness += tie.stiffness;
+    EXPECT_EQ(whole, 32);
+    EXPECT_NEAR(stiffness, 6 * 100 + 20 * 50 + 6 * 20, 1e-3);
+    EXPECT_NEAR(mass(body), 1, 1e-5);
+}
+
+// ---- regions ----
+
+// Two halves in a row, one four times as stiff: their compliances add up.
+TEST(Region, AHardHalfStretchesLess) {
+    const float h = 0.01f;
+    Body body = lattice({33, 5, 5}, h, {.youngs_modulus = 5000, .density = 1000, .damping = 30});
+    strengthen(body, nodes_in(body, {vec3(-1), vec3(0.155f, 1, 1)}), 4);
+    for (vec3& p : body.positions) p.x *= 1.002f;
+    pin(body, nodes_in(body, {vec3(-1), vec3(0.0001f, 1, 1)}));
+    pin(body, nodes_in(body, {vec3(0.32f, -1, -1), vec3(1)}));
+    auto solver = make_solver(body, {.gravity = vec3(0)});
+    for (int i = 0; i < 180; ++i) solver->step(1.0 / 60);
+    double at[3] = {};
+    const State state = solver->state();
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (int k = 0; k < 3; ++k)
+            if (body.stencil().at[i].x == 4 + 12 * k) at[k] += state.positions[i].x / 25;
+    const double hard = (at[1] - at[0]) / 0.12 - 1, soft = (at[2] - at[1]) / 0.12 - 1;
+    // The middle of the bar lies in its hard half by half a spacing; the softer link leads to x = 16.
+    EXPECT_LE(std::abs(soft / hard / 4 - 1), 0.08) << soft << ' ' << hard;
+}
+
+TEST(Region, OfATableToo) {
+    const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, {{0, 1, 2}, {0, 2, 3}}};
+    Body body = cloth(square, {.stiffness = {.structural = 10}, .density = 1});
+    strengthen(body, std::vector<int>{0, 1}, 3);
+    const Table springs = table(body);
+    for (const Tie& tie : springs.of(0))
+        if (tie.stiffness > 0) EXPECT_EQ(tie.stiffness, tie.to == 1 ? 30 : 20) << tie.to;
+}
+
+// ---- bodies as tables ----
+
+// A sheet given as triangles and the same as a grid with diagonals move alike: same springs, same masses.
+TEST(Net, TheSameSpringsInATableMoveAlike) {
+    Body grid = cloth({6, 5}, 0.02f, {.stiffness = {90, 40, 15}, .density = 0.3f, .damping = 1});
+    const Table springs = table(grid);
+    std::vector<NetSpring> ties;
+    std::vector<float> masses;
+    for (std::size_t i = 0; i < grid.count(); ++i) {
+        masses.push_back(1 / grid.inverse_mass[i]);
+        for (const Tie& tie : springs.of(i))
+            if (tie.to > int(i)) ties.push_back({int(i), tie.to, tie.stiffness, tie.rest});
+    }
+    Body written = net(grid.positions, masses, ties);
+    written.damping = grid.damping;
+    for (Body* body : {&grid, &written}) pin(*body, std::vector<int>{0, 5});
+    auto a = make_reference<double>(grid, {.step = 1e-4}, 0),
+         b = make_reference<double>(written, {.step = 1e-4}, 0);
+    ASSERT_FALSE(a->step(0.2).diverged);
+    ASSERT_FALSE(b->step(0.2).diverged);
+    const State one = a->state(), other = b->state();
+    for (std::size_t i = 0; i < grid.count(); ++i)
+        EXPECT_LE(glm::distance(one.positions[i], other.positions[i]), 1e-6);
+    EXPECT_GT(glm::distance(one.positions[29], dvec3(grid.positions[29])), 1e-4);
+}
+
+TEST(Net, RefusesWhatNamesNoNode) {
+    const std::vector<vec3> positions(2, vec3(0));
+    const std::vector<float> masses(2, 1.0f);
+    EXPECT_THROW(net(positions, masses, std::vector<NetSpring>{{0, 2, 1}}), Error);
+    EXPECT_THROW(net(positions, masses, std::vector<NetSpring>{{-1, 1, 1}}), Error);
+    EXPECT_THROW(net(positions, masses, {}, std::vector<uvec3>{{0, 1, 7}}), Error);
+}
+
+TEST(Cloth, RefusesWhatIsNoSheet) {
+    const ClothSettings settings{.density = 1};
+    const std::vector<vec3> five = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {-1, 0, 0}};
+    EXPECT_THROW(cloth(Mesh{five, {}, {{0, 1, 2}}}, settings), Error);                        // lone vertices
+    EXPECT_THROW(cloth(Mesh{five, {}, {{0, 1, 2}, {0, 4, 3}}}, settings), Error);             // a bow tie
+    EXPECT_THROW(cloth(Mesh{five, {}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}}, settings), Error);  // a fin
+}
+
+// ---- state ----
+
+TEST(State, SavedAndRestoredExactly) {
+    for (const auto& [integrator, name] : names(Integrator{})) {
+        Body body = lattice({4, 5, 3}, 0.01f, {.youngs_modulus = 2000, .density = 1000, .damping = 60});
+        pin(body, std::vector<int>{0, 1});
+        const Simulation simulation{.integrator = integrator, .frame = 1e-3};
+        auto solver = make_solver(body, simulation);
+        solver->step(0.011);
+        const State kept = solver->save();
+        solver->step(0.017);
+        solver->step(0.003);
+        const State end = solver->save();
+
+        solver->restore(kept);
+        solver->step(0.017);
+        solver->step(0.003);
+        EXPECT_EQ(solver->save().positions, end.positions) << name;
+        EXPECT_EQ(solver->save().velocities, end.velocities) << name;
+        auto fresh = make_solver(body, simulation);
+        fresh->restore(kept);
+        EXPECT_EQ(fresh->nodes().positions[7], vec3(kept.positions[7])) << name;
+        fresh->step(0.017);
+        fresh->step(0.003);
+        EXPECT_EQ(fresh->save().positions, end.positions) << name;
+    }
+}
+
+// A change of the integrator in mid flight keeps the motion: state() of one is a start for another.
+TEST(State, CarriesOverToAnotherIntegrator) {
+    const Body body = lattice({4, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
+    auto verlet = make_reference<double>(body, {.step = 1e-5}, 0);
+    State thrown = verlet->state();
+    for (std::size_t i = 0; i < thrown.velocities.size(); ++i)
+        thrown.velocities[i] = {1 + 5 * thrown.positions[i].y, 2, 0};
+    verlet->restore(thrown);
+    auto rk4 = make_reference<double>(body, {.integrator = Integrator::rk4, .step = 1e-5}, 0);
+    verlet->step(0.01);
+    rk4->restore(verlet->state());
+    verlet->step(0.01);
+    rk4->step(0.01);
+    const State a = verlet->state(), b = rk4->state();
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        EXPECT_LE(glm::distance(a.positions[i], b.positions[i]), 1e-8);
+        EXPECT_LE(glm::distance(a.velocities[i], b.velocities[i]), 1e-5);
+    }
+}
+
+}  // namespace
+}  // namespace palpate
