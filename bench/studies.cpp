@@ -68,7 +68,7 @@ double amplitude(const Body& rest, const State& state) {
     return most;
 }
 
-// Whether a shaken lattice shakes ever harder: in the last quarter of 4,000 steps more than in the second, or
+// Whether a shaken lattice shakes ever harder: in the last quarter of 6,000 steps more than in the second, or
 // twenty times as hard as at first. What has died out to rounding does not count.
 bool grows(const Body& rest, Integrator integrator, double step) {
     const float slightly = 1e-7f;
@@ -77,13 +77,13 @@ bool grows(const Body& rest, Integrator integrator, double step) {
     auto solver =
         make_reference<double>(body, {.integrator = integrator, .step = step, .gravity = vec3(0)}, 0);
     double largest[4] = {};
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 60; ++i) {
         if (solver->step(100 * step).diverged) return true;
         const double now = amplitude(rest, solver->state());
         if (!(now < 20 * slightly)) return true;
-        largest[i / 10] = std::max(largest[i / 10], now);
+        largest[i / 15] = std::max(largest[i / 15], now);
     }
-    return largest[3] > 1e-5 * slightly && !(largest[3] < 1.15 * largest[1]);
+    return largest[3] > 1e-5 * slightly && !(largest[3] < 1.3 * largest[1]);
 }
 
 }  // namespace
