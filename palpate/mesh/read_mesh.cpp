@@ -10,6 +10,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <new>
 #include <optional>
 #include <set>
@@ -33,6 +35,8 @@ namespace palpate {
 namespace {
 
 using Index = std::uint32_t;
+
+constexpr std::size_t most_unzipped = std::size_t(4) << 30;  // bytes
 
 // What is left to read of a file, and under which name to complain about it.
 struct Source {
@@ -312,14 +316,37 @@ Mesh mesh_of(const aiMesh& from, bool join) {
     return mesh;
 }
 
+// The whole of a file, unzipped where it is a gzip. It grows as it comes, and not beyond what a mesh may
+// need.
+std::string read_unzipped(const std::filesystem::path& path) {
+    struct Close {
+        void operator()(gzFile file) const { gzclose(file); }
+    };
+    const std::unique_ptr<gzFile_s, Close> file(gzopen(path.c_str(), "rb"));
+    std::string text;
+    for (std::vector<char> block(1 << 20);;) {
+        const int count = file ? gzread(file.get(), block.data(), unsigned(block.size())) : -1;
+        int error = Z_OK;
+        if (file) gzerror(file.get(), &error);
+        if (count < 0 || error != Z_OK)
+            throw Error("a truncated or damaged gzip", path.string(), "get the file again");
+        if (count == 0) return text;
+        text.append(block.data(), std::size_t(count));
+        if (text.size() > most_unzipped)
+            throw Error("a gzip of more than 4 GB", path.string(), "unzip and simplify the mesh first");
+    }
+}
+
 }  // namespace
 
 Mesh read_mesh(const std::filesystem::path& path, Units units) {
-    const std::string format = ending(path);
+    const bool zipped = ending(path) == ".gz";
+    const std::string format = ending(zipped ? path.stem() : path);
     if (format != ".ply" && format != ".obj")
-        throw Error("cannot read the mesh format \"" + format + "\"", path.string(), "use .ply or .obj");
+        throw Error("cannot read the mesh format \"" + format + "\"", path.string(),
+                    "use .ply or .obj, or either with .gz behind");
     try {
-        const std::string file = read_text(path);
+        const std::string file = zipped ? read_unzipped(path) : read_text(path);
         const Source source{file, path};
         const std::string text = format == ".ply" ? Ply(source).checked() : checked_obj(source);
         if (text.empty()) source.broken("no faces");

@@ -7,6 +7,7 @@
 #include "tests/scratch.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -353,6 +354,31 @@ TEST(ReadMesh, SurvivesDamagedFilesInSilence) {
     }
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// ---- gzip ----
+
+TEST(ReadMesh, AGzipReadsAsWhatIsInIt) {
+    Scratch scratch;
+    const Mesh mesh = odd_mesh(500, true);
+    write_mesh(mesh, scratch / "plain.ply");
+    const std::string bytes = read_text(scratch / "plain.ply");
+    gzFile file = gzopen((scratch / "a.ply.gz").c_str(), "wb");
+    ASSERT_EQ(gzwrite(file, bytes.data(), unsigned(bytes.size())), int(bytes.size()));
+    gzclose(file);
+    const Mesh back = read_mesh(scratch / "a.ply.gz", Units::metres);
+    EXPECT_TRUE(same_bytes(back.positions, mesh.positions));
+    EXPECT_EQ(back.triangles, mesh.triangles);
+
+    const std::string whole = read_text(scratch / "a.ply.gz");
+    for (std::size_t kept : {std::size_t(5), whole.size() / 2, whole.size() - 1})
+        EXPECT_HAS(mesh_error(scratch / "cut.ply.gz", whole.substr(0, kept)), "gzip");
+    std::string damaged = whole;
+    damaged[whole.size() / 2] ^= 0x55;
+    EXPECT_HAS(mesh_error(scratch / "damaged.ply.gz", damaged), "gzip");
+    EXPECT_HAS(mesh_error(scratch / "a.stl.gz", whole), "format");
+    EXPECT_HAS(error_of(scratch / "none.ply.gz", [&] { read_mesh(scratch / "none.ply.gz", Units::metres); }),
+               ";");
 }
 
 }  // namespace
