@@ -47,15 +47,19 @@ Json describe(const Scene& scene) {
     for (const BodyRecipe& body : scene.bodies)
         bodies.push_back({{"name", body.name},
                           {"from", body.dims             ? "dims"
+                                   : body.cloth          ? "cloth"
                                    : body.volume.empty() ? body.surface
                                                          : body.volume},
                           {"mapping", name_of(body.mapping)}});
-    for (const ToolRecipe& tool : scene.tools) tools.push_back({{"name", tool.name}, {"kind", tool.kind}});
+    for (const ToolRecipe& tool : scene.tools)
+        tools.push_back({{"name", tool.name}, {"kind", name_of(tool.kind)}});
     return {{"kind", "scene"},
             {"backend", name_of(scene.simulation.backend)},
             {"integrator", name_of(scene.simulation.integrator)},
             {"duration_s", scene.duration},
             {"bodies", bodies},
+            {"colliders", scene.colliders.size()},
+            {"moves", scene.moves.size()},
             {"tools", tools}};
 }
 

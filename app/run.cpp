@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 namespace {
 
@@ -15,6 +16,7 @@ using namespace palpate;
 
 struct Arguments {
     std::string scene, backend, integrator, size = "1280x720";
+    std::optional<std::string> rest;
     std::vector<Change> changes;
     bool force = false;
     RunSettings settings;
@@ -27,6 +29,13 @@ void set_size(const std::string& text, RunSettings& settings) {
     const bool fits = read == 2 && std::size_t(used) == text.size() && settings.width > 0 &&
                       settings.height > 0 && settings.width <= 16384 && settings.height <= 16384;
     if (!fits) throw CLI::ValidationError("--size", "write WIDTHxHEIGHT, such as 1280x720");
+}
+
+// The rule by its name; an option without a value has none.
+void set_rest(const std::string& rule, RunSettings& settings) {
+    const auto known = rule.empty() ? Rest::speed : value_of<Rest>(rule);
+    if (!known || *known == Rest::none) throw CLI::ValidationError("--until-rest", "choose speed or move");
+    settings.until_rest = *known;
 }
 
 void print_summary(const Report& report) {
@@ -50,7 +59,8 @@ void print_summary(const Report& report) {
                      {"largest force", fmt::format("{:.3g} N", tool.largest_force)},
                      {"deepest indentation", fmt::format("{:.1f} mm", 1000 * tool.deepest_indentation)}});
     print_table({{"solver", report.backend + ", " + report.integrator},
-                 {"simulated", fmt::format("{:.2f} s in {} frames", report.simulated, report.frames)},
+                 {"simulated", fmt::format("{:.2f} s in {} frames{}", report.simulated, report.frames,
+                                           report.rest ? ", then at rest" : "")},
                  {"build", fmt::format("{:6.2f} s", report.seconds.build)},
                  {"simulate", each(report.seconds.simulate)},
                  {"map", each(report.seconds.map)},
@@ -67,6 +77,7 @@ void run_scene(Arguments& arguments) {
     if (!arguments.integrator.empty())
         arguments.changes.push_back("simulation.integrator=\"" + arguments.integrator + "\"");
     set_size(arguments.size, arguments.settings);
+    if (arguments.rest) set_rest(*arguments.rest, arguments.settings);
     Scene scene = read_scene(arguments.scene, arguments.changes);
     scene.simulation.force = arguments.force;
 
@@ -90,9 +101,13 @@ void add_run(CLI::App& app) {
     command->add_option("--backend", arguments->backend, "see: palpate list backends");
     command->add_option("--integrator", arguments->integrator, "see: palpate list integrators");
     auto* frames = command->add_option("--frames", settings.frames, "stop after so many frames of 1/60 s");
-    command->add_option("--steps", settings.steps, "stop after so many steps of the solver")
-        ->excludes(frames);
+    auto* steps = command->add_option("--steps", settings.steps, "stop after so many steps of the solver")
+                      ->excludes(frames);
     frames->check(CLI::Range(0, 100'000'000));
+    command->add_option("--until-rest", arguments->rest, "end at rest, by the rule speed (no value) or move")
+        ->expected(0, 1)
+        ->excludes(frames)
+        ->excludes(steps);
     command->add_option("--size", arguments->size, "of the pictures, in pixels")->capture_default_str();
     command->add_option("--video", settings.video, "write a film, MP4 (needs ffmpeg)");
     command->add_option("--images", settings.images, "write PNG pictures into this folder");

@@ -97,6 +97,8 @@ void write_report(const Report& report, const std::filesystem::path& path) {
                  {"deepest_indentation_m", largest(report.tools, &Tool::deepest_indentation)},
                  {"largest_force_n", largest(report.tools, &Tool::largest_force)},
                  {"diverged", report.diverged},
+                 {"at_rest", report.rest.has_value()},
+                 {"rest_s", report.rest ? Json(*report.rest) : Json(nullptr)},
                  {"notes", report.notes},
                  {"bodies", Json::array()},
                  {"tools", Json::array()}};

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct Report {
         std::size_t nodes = 0, pinned = 0, springs = 0, cells = 0, vertices = 0, faces = 0;
         double spacing = 0;              // m
         double mass = 0;                 // kg, of the free nodes
-        double volume = 0;               // m³, enclosed by the surface at rest
+        double volume = 0;               // m³, enclosed by the surface at rest; 0 for an open sheet
         long steps = 0;                  // in all
         double step = 0;                 // s, the shortest taken
         double kinetic_energy = 0;       // J, at the end
@@ -36,11 +37,12 @@ struct Report {
 
     std::string scene, backend, integrator, renderer;
     int threads = 1;
-    int frames = 0;         // of 1/60 s
-    int pictures = 0;       // drawn
-    double simulated = 0;   // s
-    Seconds seconds;        // s, of work
-    bool diverged = false;  // then the run ended at `simulated`
+    int frames = 0;              // of 1/60 s
+    int pictures = 0;            // drawn
+    double simulated = 0;        // s
+    Seconds seconds;             // s, of work
+    bool diverged = false;       // then the run ended at `simulated`
+    std::optional<double> rest;  // s, when a run that was to end at rest came to it
     std::vector<Body> bodies;
     std::vector<Tool> tools;
     std::vector<std::string> notes;

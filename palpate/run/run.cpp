@@ -3,14 +3,11 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
-#include "palpate/gl/context.h"
 #include "palpate/mesh/write.h"
-#include "palpate/render/renderer.h"
-#include "palpate/run/film.h"
+#include "palpate/run/play.h"
 #include "palpate/run/plot.h"
-#include "palpate/run/tip.h"
+#include "palpate/run/show.h"
 #include "palpate/scene/build.h"
-#include "palpate/solver/solver.h"
 
 #include <fmt/format.h>
 
@@ -20,92 +17,6 @@
 
 namespace palpate {
 namespace {
-
-constexpr double frame = 1.0 / 60;     // s
-constexpr int frames_per_picture = 2;  // of a film: 30 pictures a second
-
-// ---- pictures ----
-
-// Draws the scene as it moves, into a film and single pictures.
-class Show {
- public:
-    Show(const Scene& scene, const std::vector<Model>& models, const RunSettings& settings)
-        : scene_(scene), models_(models), settings_(settings), renderer_({settings.width, settings.height}) {
-        for (const Model& model : models) meshes_.push_back(renderer_.add(model.surface));
-        if (!settings.video.empty())
-            film_ = std::make_unique<Film>(settings.video, settings.width, settings.height,
-                                           60 / frames_per_picture);
-        if (!settings.images.empty()) make_folder(settings.images);
-        if (settings.lattice)
-            for (const Model& model : models) springs_.push_back(spring_ends(model.body));
-        camera_ = scene.camera;
-        camera_.look_at = looked_at();
-    }
-
-    const std::string& renderer() const { return renderer_.context().renderer(); }
-
-    // Frame 0 is the state before the first step. Returns whether it drew.
-    bool frame_done(int number, const std::vector<Skin>& skins,
-                    const std::vector<std::unique_ptr<Solver>>& solvers,
-                    const std::vector<std::optional<Press>>& presses) {
-        const bool film_wants = film_ && number % frames_per_picture == 0;
-        const bool images_want = !settings_.images.empty() && number * frame >= next_image_ - 1e-9;
-        if (!film_wants && !images_want) return false;
-        renderer_.draw(picture(skins, solvers, presses));
-        const Image image = renderer_.image();
-        if (film_wants) film_->add(image);
-        if (images_want) {
-            write_png(image, settings_.images / fmt::format("{}-{:05.2f}s.png", scene_.name, number * frame));
-            next_image_ += settings_.image_every;
-        }
-        return true;
-    }
-
-    void finish() {
-        if (film_) film_->finish();
-    }
-
- private:
-    vec3 looked_at() const {
-        if (const auto* point = std::get_if<vec3>(&scene_.look_at)) return *point;
-        for (const Model& model : models_)
-            if (model.body.name == std::get<std::string>(scene_.look_at))
-                return bounds(model.surface).centre();
-        return vec3(0);
-    }
-
-    Picture picture(const std::vector<Skin>& skins, const std::vector<std::unique_ptr<Solver>>& solvers,
-                    const std::vector<std::optional<Press>>& presses) const {
-        Picture picture;
-        picture.camera = camera_;
-        picture.light = scene_.light;
-        for (std::size_t m = 0; m < models_.size(); ++m) {
-            const BodyRecipe& recipe = scene_.bodies[m];
-            picture.surfaces.push_back(
-                {meshes_[m], skins[m].positions, skins[m].normals, {recipe.colour, recipe.shine}});
-            if (settings_.lattice) picture.wires.push_back({solvers[m]->nodes().positions, springs_[m], {}});
-        }
-        for (std::size_t t = 0; t < presses.size(); ++t)
-            if (presses[t])
-                picture.balls.push_back({presses[t]->centre, presses[t]->radius, scene_.tools[t].colour});
-        for (const Collider& collider : scene_.simulation.colliders)
-            if (const auto* plane = std::get_if<Plane>(&collider.shape))
-                picture.grounds.push_back({plane->normal, plane->offset});
-            else if (const auto* sphere = std::get_if<Sphere>(&collider.shape))
-                picture.balls.push_back({sphere->centre, sphere->radius, vec3(0.5f)});
-        return picture;
-    }
-
-    const Scene& scene_;
-    const std::vector<Model>& models_;
-    const RunSettings& settings_;
-    Renderer renderer_;
-    Camera camera_;
-    std::vector<int> meshes_;
-    std::vector<std::vector<uvec2>> springs_;
-    std::unique_ptr<Film> film_;
-    double next_image_ = 0;
-};
 
 // ---- what is written at the end ----
 
@@ -134,141 +45,71 @@ void write_surfaces(const std::vector<Model>& models, const std::vector<Skin>& s
     }
 }
 
-Report::Body describe(const Model& model) {
-    Report::Body body;
-    body.name = model.body.name;
-    body.nodes = model.body.count();
-    body.pinned =
-        std::size_t(std::count(model.body.inverse_mass.begin(), model.body.inverse_mass.end(), 0.0f));
-    body.springs = spring_ends(model.body).size();
-    body.cells = model.body.cells.size();
-    body.vertices = model.surface.positions.size();
-    body.faces = model.surface.triangles.size();
-    body.spacing = model.body.spacing;
-    body.mass = mass(model.body);
-    body.volume = volume(model.surface);
-    return body;
+// ---- rest ----
+
+// When the last path of a scene has come to its end, s.
+double last_of_paths(const Scene& scene) {
+    double last = 0;
+    auto look_at = [&](const Path& path) {
+        if (!path.empty()) last = std::max(last, path.back().time);
+    };
+    look_at(scene.wind);
+    for (const ColliderRecipe& collider : scene.colliders) look_at(collider.path);
+    for (const MoveRecipe& move : scene.moves) look_at(move.path);
+    for (const ToolRecipe& tool : scene.tools) look_at(tool.path);
+    return last;
 }
 
-// ---- the run ----
-
-// A scene in motion: a solver and a skin for each body, a tip for each tool.
-class Play {
+// Watches for the moment when everything is at rest.
+class RestWatch {
  public:
-    Play(const Scene& scene, const std::vector<Model>& models, Report& report)
-        : scene_(scene), models_(models), report_(report), skins_(models.size()) {
-        for (const Model& model : models) {
-            Simulation simulation = scene.simulation;
-            simulation.frame = frame;
-            for (const ToolRecipe& tool : scene.tools)
-                simulation.contact += pressure_per_metre(as_press(tool));
-            solvers_.push_back(make_solver(model.body, simulation));
-            report.bodies.push_back(describe(model));
-            for (const ToolRecipe& tool : scene.tools)
-                if (tool.radius < 0.7f * model.body.spacing)
-                    report.notes.push_back(
-                        fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
-                                    "between the nodes; use more nodes",
-                                    tool.name, model.body.name));
+    RestWatch(Rest rule, const Scene& scene, const Models& made)
+        : rule_(rule), busy_until_(last_of_paths(scene)) {
+        for (const Model& model : made.models) {
+            before_.push_back(model.body.positions);
+            spacings_.push_back(model.body.spacing);
         }
-        for (const ToolRecipe& tool : scene.tools) {
-            tips_.emplace_back(tool);
-            report.tools.emplace_back().name = tool.name;
-        }
-        presses_.resize(tips_.size());
-        for (std::size_t m = 0; m < models.size(); ++m) skins_[m].triangles = &models[m].surface.triangles;
-        map();
     }
 
-    const std::vector<Skin>& skins() const { return skins_; }
-    const std::vector<std::unique_ptr<Solver>>& solvers() const { return solvers_; }
-    const std::vector<std::optional<Press>>& presses() const { return presses_; }
-
-    // Steps that the busiest body takes for a frame.
-    int steps_per_frame() const {
-        double shortest = frame;
-        for (const auto& solver : solvers_) shortest = std::min(shortest, solver->longest_step({}));
-        return steps_within(frame, shortest);
-    }
-
-    // Simulates and maps `seconds` from `time` on. False if a body diverged, which is then as it was before.
-    bool advance(double time, double seconds) {
-        std::vector<Press> pressing;
-        std::vector<std::size_t> tool_of;  // each press
-        for (std::size_t t = 0; t < tips_.size(); ++t) {
-            presses_[t] = tips_[t].press(time, seconds, skins_);
-            if (!presses_[t]) continue;
-            pressing.push_back(*presses_[t]);
-            tool_of.push_back(t);
-        }
-        std::vector<dvec3> impulses(pressing.size(), dvec3(0));
-        bool sound = true;
-        {
-            Timed timed(report_.seconds.simulate);
-            for (std::size_t m = 0; m < solvers_.size(); ++m) sound &= move(m, seconds, pressing, impulses);
-        }
-        if (!sound) return false;
-        map();
-        std::vector<double> forces(tips_.size(), 0);
-        for (std::size_t p = 0; p < pressing.size(); ++p)
-            forces[tool_of[p]] = glm::length(impulses[p]) / seconds;
-        for (std::size_t t = 0; t < tips_.size(); ++t) record(t, time + seconds, forces[t]);
-        return true;
-    }
-
-    std::vector<State> states() const {
-        std::vector<State> states;
-        for (const auto& solver : solvers_) states.push_back(solver->state());
-        return states;
+    // After each frame. Before the last path's end nothing counts: what rests may yet be pushed.
+    bool at_rest(double time, double seconds, const Play& play) {
+        constexpr double long_enough = 0.5;  // s: a swing that turns back is slow for a moment too
+        if (rule_ == Rest::none) return false;
+        const bool all = rule_ == Rest::move ? small_moves(play) : slow(seconds, play);
+        quiet_ = all && time - seconds >= busy_until_ - 1e-9 ? quiet_ + seconds : 0;
+        return quiet_ >= (rule_ == Rest::move ? seconds : long_enough) - 1e-9;
     }
 
  private:
-    static Press as_press(const ToolRecipe& tool) { return {{}, {}, tool.radius, tool.stiffness}; }
+    static bool small_moves(const Play& play) {
+        return std::all_of(play.stats().begin(), play.stats().end(),
+                           [](const Stats& stats) { return stats.largest_move < 0.001; });
+    }
 
-    bool move(std::size_t m, double seconds, const std::vector<Press>& pressing,
-              std::vector<dvec3>& impulses) {
-        const Stats stats = solvers_[m]->step(seconds, {.presses = pressing});
-        if (stats.diverged) {
-            report_.notes.push_back(
-                fmt::format("body {} diverged with steps of {:.4g} s", models_[m].body.name, stats.step));
-            return false;
+    // By the way of each node from frame to frame: its speed at a moment is partly the rounding of floats.
+    bool slow(double seconds, const Play& play) {
+        bool all = true;
+        for (std::size_t m = 0; m < before_.size(); ++m) {
+            const auto now = play.nodes(m).positions;
+            const float way = spacings_[m] / 1000 * float(seconds / frame_seconds);
+            for (std::size_t i = 0; i < now.size(); ++i) all &= glm::distance(now[i], before_[m][i]) <= way;
+            before_[m].assign(now.begin(), now.end());
         }
-        for (std::size_t p = 0; p < pressing.size(); ++p) impulses[p] += stats.reactions[p];
-        Report::Body& body = report_.bodies[m];
-        body.steps += stats.steps;
-        if (body.step == 0 || stats.step < body.step) body.step = stats.step;
-        body.largest_speed = std::max(body.largest_speed, stats.largest_speed);
-        body.inverted_cells =
-            std::max(body.inverted_cells, inverted_cells(models_[m].body, solvers_[m]->nodes().positions));
-        return true;
+        return all;
     }
 
-    void map() {
-        Timed timed(report_.seconds.map);
-        for (std::size_t m = 0; m < models_.size(); ++m)
-            deform(models_[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals);
-    }
-
-    void record(std::size_t t, double time, double force) {
-        if (presses_[t])
-            presses_[t]->centre = tips_[t].centre(time);  // where it is now, for whoever draws it
-        const double depth = presses_[t] ? tips_[t].indentation(presses_[t]->centre, skins_) : 0;
-        Report::Tool& tool = report_.tools[t];
-        tool.largest_force = std::max(tool.largest_force, force);
-        tool.deepest_indentation = std::max(tool.deepest_indentation, depth);
-        tool.time.push_back(time);
-        tool.force.push_back(force);
-        tool.indentation.push_back(depth);
-    }
-
-    const Scene& scene_;
-    const std::vector<Model>& models_;
-    Report& report_;
-    std::vector<std::unique_ptr<Solver>> solvers_;
-    std::vector<Skin> skins_;
-    std::vector<Tip> tips_;
-    std::vector<std::optional<Press>> presses_;  // of the last frame, one a tool
+    Rest rule_;
+    double busy_until_;
+    double quiet_ = 0;  // s, for so long it has been at rest
+    std::vector<std::vector<vec3>> before_;
+    std::vector<float> spacings_;
 };
+
+double longest(const Scene& scene, const RunSettings& settings, const Play& play) {
+    if (settings.steps) return frame_seconds * double(*settings.steps) / play.steps_per_frame();
+    if (settings.frames) return frame_seconds * *settings.frames;
+    return settings.until_rest == Rest::none ? scene.duration : 10 * scene.duration;
+}
 
 // Says before the work what could not be written after it.
 void check_outputs(const RunSettings& settings) {
@@ -293,34 +134,35 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
 
     const Models made = build(scene, progress);
     report.notes = made.notes;
-    Play play(scene, made.models, report);
+    Play play(scene, made, report);
     std::unique_ptr<Show> show;
     if (!settings.video.empty() || !settings.images.empty()) {
-        show = std::make_unique<Show>(scene, made.models, settings);
+        show = std::make_unique<Show>(scene, made, settings);
         report.renderer = show->renderer();
     }
     report.seconds.build = now() - start;
 
-    const double duration = settings.steps    ? frame * double(*settings.steps) / play.steps_per_frame()
-                            : settings.frames ? frame * *settings.frames
-                                              : scene.duration;
+    const double duration = longest(scene, settings, play);
+    RestWatch watch(settings.until_rest, scene, made);
     auto draw = [&] {
         Timed timed(report.seconds.render);
-        if (show)
-            report.pictures += show->frame_done(report.frames, play.skins(), play.solvers(), play.presses());
+        if (show) report.pictures += show->frame_done(report.frames, play);
     };
     draw();
-    while (report.simulated < duration - 1e-9) {
-        const double span = std::min(frame, duration - report.simulated);
+    while (report.simulated < duration - 1e-9 && !report.rest) {
+        const double span = std::min(frame_seconds, duration - report.simulated);
         if (!play.advance(report.simulated, span)) {
             report.diverged = true;
             break;
         }
         report.simulated += span;
         ++report.frames;
+        if (watch.at_rest(report.simulated, span, play)) report.rest = report.simulated;
         draw();
         if (progress) progress("running " + scene.name, report.simulated / duration);
     }
+    if (settings.until_rest != Rest::none && !report.rest && !report.diverged)
+        report.notes.push_back(fmt::format("not at rest after {:.4g} s", report.simulated));
     if (show) show->finish();
 
     for (const Report::Body& body : report.bodies)

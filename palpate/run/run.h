@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/base/names.h"
 #include "palpate/base/progress.h"
 #include "palpate/run/report.h"
 #include "palpate/scene/scene.h"
@@ -8,12 +9,29 @@
 
 namespace palpate {
 
+constexpr double frame_seconds = 1.0 / 60;
+
+/// When a run may end before its time.
+enum class Rest {
+    none,
+    speed,  // for half a second no node has gone further in a frame than a thousandth of its body's spacing
+    move,   // no node has moved by 0.001 m in the last step (the 2012 paper's rule)
+};
+
+inline std::span<const Named<Rest>> names(Rest) {
+    static constexpr Named<Rest> all[] = {{Rest::none, "none"}, {Rest::speed, "speed"}, {Rest::move, "move"}};
+    return all;
+}
+
 /// What a run shall last and leave behind. A path that is empty is not written; folders are made where they
 /// are missing.
 struct RunSettings {
     // One of these, or the scene's own duration.
     std::optional<int> frames;  // of 1/60 s
     std::optional<long> steps;  // of the solver
+    /// Ends the run as soon as everything is at rest and every path has come to its end; without a number
+    /// above, after ten times the scene's duration at the latest.
+    Rest until_rest = Rest::none;
 
     std::filesystem::path video;    // MP4, 30 pictures a second
     std::filesystem::path images;   // a folder of PNG pictures

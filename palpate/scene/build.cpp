@@ -1,7 +1,9 @@
 #include "palpate/scene/build.h"
 
 #include "palpate/base/error.h"
+#include "palpate/body/cloth.h"
 #include "palpate/body/hull.h"
+#include "palpate/body/influences.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
 #include "palpate/mesh/read.h"
@@ -11,7 +13,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <map>
 
 namespace palpate {
 namespace {
@@ -20,30 +24,79 @@ void tell(const Progress& progress, const BodyRecipe& recipe, const char* doing,
     if (progress) progress(recipe.name + ": " + doing, fraction);
 }
 
-// A pin that holds nothing is a note: the body would fall.
-std::vector<int> pinned_nodes(const Body& body, const BodyRecipe& recipe, vec3 gravity,
-                              std::vector<std::string>& notes) {
+vec3 down(const Scene& scene) {
+    const vec3 gravity = scene.simulation.gravity;
+    return glm::length(gravity) > 0 ? glm::normalize(gravity) : vec3(0, -1, 0);
+}
+
+Bounds bounds_of(const std::vector<vec3>& points) {
+    Bounds box;
+    for (vec3 p : points) box.include(p);
+    return box;
+}
+
+// ---- nodes ----
+
+// Nodes in rising order, each once. What chooses none is a note: a body that nothing pins would fall.
+// `where` and `key` name the choice: "body cube", "pin.".
+std::vector<int> chosen(const Body& body, const Choice& choice, vec3 down, const std::string& where,
+                        const std::string& key, std::vector<std::string>& notes) {
     std::vector<int> all;
     auto add = [&](const char* which, const std::vector<int>& nodes) {
-        if (nodes.empty()) notes.push_back(fmt::format("body {}: pin.{} holds no node", recipe.name, which));
+        if (nodes.empty()) notes.push_back(fmt::format("{}: {}{} holds no node", where, key, which));
         all.insert(all.end(), nodes.begin(), nodes.end());
     };
-    const Pin& pin = recipe.pin;
-    const vec3 down = glm::length(gravity) > 0 ? glm::normalize(gravity) : vec3(0, -1, 0);
-    if (pin.below) add("below", nodes_below(body, *pin.below, down));
-    if (pin.near) add("near", nodes_near(body, *pin.near, pin.radius));
-    if (pin.box.size() == 2) {
-        Bounds box;
-        for (vec3 corner : pin.box) box.include(corner);
-        add("box", nodes_in(body, box));
-    }
-    for (int node : pin.nodes)
+    if (choice.below) add("below", nodes_below(body, *choice.below, down));
+    if (choice.near) add("near", nodes_near(body, *choice.near, choice.radius));
+    if (!choice.box.empty()) add("box", nodes_in(body, bounds_of(choice.box)));
+    for (int node : choice.nodes)
         if (node < 0 || node >= int(body.count()))
-            throw Error(fmt::format("pin.nodes names node {} of {}", node, body.count()),
-                        "body " + recipe.name, "count nodes from 0");
-    if (!pin.nodes.empty()) add("nodes", pin.nodes);
+            throw Error(fmt::format("{}nodes names node {} of {}", key, node, body.count()), where,
+                        "count nodes from 0");
+    all.insert(all.end(), choice.nodes.begin(), choice.nodes.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
 }
+
+Volume read_labels(const Region& region, const BodyRecipe& recipe, const std::filesystem::path& folder) {
+    Volume labels = read_volume(find_data(region.labels, folder), recipe.units.value_or(Units::millimetres));
+    const mat3 turned = turn(recipe.rotate);
+    labels.origin = turned * labels.origin + recipe.move;
+    labels.direction = turned * labels.direction;
+    return labels;
+}
+
+// How many times as stiff as the body a region's springs are.
+float factor_of(const Region& region, const Body& body) {
+    if (region.factor > 0) return region.factor;
+    const float stiffness =
+        region.stiffness > 0 ? region.stiffness : 0.4f * region.youngs_modulus * body.spacing;
+    return stiffness / body.stencil().links[0].stiffness;
+}
+
+void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene,
+                        std::vector<std::string>& notes) {
+    std::vector<float> factors(body.count(), 1);
+    for (std::size_t r = 0; r < recipe.regions.size(); ++r) {
+        const Region& region = recipe.regions[r];
+        const std::string where = fmt::format("body {}, region {}", recipe.name, r + 1);
+        std::vector<int> nodes = chosen(body, region.choice, down(scene), where, "", notes);
+        if (!region.labels.empty()) {
+            const auto labelled =
+                nodes_labelled(body, read_labels(region, recipe, scene.folder), *region.label);
+            if (labelled.empty()) notes.push_back(where + ": label holds no node");
+            nodes.insert(nodes.end(), labelled.begin(), labelled.end());
+        }
+        for (int node : nodes) factors[std::size_t(node)] = factor_of(region, body);
+    }
+    std::map<float, std::vector<int>> alike;
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        if (factors[i] != 1) alike[factors[i]].push_back(int(i));
+    for (const auto& [factor, nodes] : alike) strengthen(body, nodes, factor);
+}
+
+// ---- bodies ----
 
 // What the user should know of what came out.
 void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::string>& notes) {
@@ -51,11 +104,13 @@ void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::st
         notes.push_back(fmt::format("body {}: {}", recipe.name, what));
     };
     const Body& body = model.body;
-    if (recipe.dims && body.cells.empty())
-        note("one node thick, so it has no surface to draw or to hang on it");
-    if (body.cells.empty()) return;
+    if (model.surface.triangles.empty()) {
+        note(recipe.cloth ? "one node wide, so it has no surface to draw"
+                          : "one node thick, so it has no surface to draw or to hang on it");
+        return;
+    }
     if (const std::string warning = size_warning(model.surface); !warning.empty()) note(warning);
-    if (recipe.dims) return;
+    if (recipe.dims || recipe.is_cloth()) return;
     if (recipe.spacing <= 0 && std::abs(double(body.count()) / recipe.nodes - 1) > 0.05)
         note(fmt::format("{} nodes instead of {}: the nearest that a spacing gives", body.count(),
                          recipe.nodes));
@@ -70,30 +125,154 @@ void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::st
             filled));
 }
 
+ClothSettings cloth_settings(const BodyRecipe& recipe) {
+    ClothSettings settings;
+    if (recipe.springs) settings.stiffness = *recipe.springs;
+    settings.density = recipe.material.density;
+    settings.mass = recipe.material.mass;
+    settings.damping = recipe.material.damping;
+    settings.link_damping = recipe.material.link_damping;
+    return settings;
+}
+
 Body make_body(const BodyRecipe& recipe, const Mesh& surface, const Progress& progress) {
-    if (recipe.dims) {
-        Body body = lattice(*recipe.dims, recipe.spacing, recipe.material);
-        for (vec3& p : body.positions) p += recipe.move;
-        return body;
-    }
+    if (recipe.cloth) return cloth(*recipe.cloth, recipe.spacing, cloth_settings(recipe));
+    if (recipe.sheet) return cloth(surface, cloth_settings(recipe));
+    if (recipe.dims && recipe.springs)
+        return lattice(*recipe.dims, recipe.spacing, *recipe.springs, recipe.material);
+    if (recipe.dims) return lattice(*recipe.dims, recipe.spacing, recipe.material);
     return lattice(surface, {.nodes = recipe.nodes, .spacing = recipe.spacing, .material = recipe.material},
                    progress);
 }
 
+// A grid is made and its surface hung on it at the origin, where its cells lie along the axes.
+void place(Model& model, const BodyRecipe& recipe) {
+    const mat3 turned = turn(recipe.rotate);
+    for (vec3& p : model.body.positions) p = turned * p + recipe.move;
+    for (vec3& p : model.surface.positions) p = turned * p + recipe.move;
+    for (vec3& n : model.surface.normals) n = turned * n;
+}
+
 Model build_one(const BodyRecipe& recipe, const Scene& scene, std::vector<std::string>& notes,
                 const Progress& progress) {
+    const bool grid = recipe.dims || recipe.cloth;
     Model model;
-    if (!recipe.dims) model.surface = make_surface(recipe, scene.folder, progress).mesh;
-    tell(progress, recipe, "filling with a lattice", 0.6);
+    if (!grid) model.surface = make_surface(recipe, scene.folder, progress).mesh;
+    tell(progress, recipe, recipe.is_cloth() ? "making cloth" : "filling with a lattice", 0.6);
     model.body = make_body(recipe, model.surface, progress);
     model.body.name = recipe.name;
-    if (recipe.dims) model.surface = hull_mesh(model.body);
+    if (grid) model.surface = recipe.dims ? hull_mesh(model.body) : face_mesh(model.body);
     tell(progress, recipe, "hanging the surface on it", 0.9);
-    model.embedding = embed(model.surface, model.body, recipe.mapping);
+    if (!model.surface.positions.empty() && !model.surface.triangles.empty())
+        model.embedding = embed(model.surface, model.body, recipe.mapping);
+    else
+        model.surface = {};  // what has no faces shows nothing
+    if (grid) place(model, recipe);
 
-    pin(model.body, pinned_nodes(model.body, recipe, scene.simulation.gravity, notes));
+    strengthen_regions(model.body, recipe, scene, notes);
+    pin(model.body, chosen(model.body, recipe.pin, down(scene), "body " + recipe.name, "pin.", notes));
     add_notes(recipe, model, notes);
     return model;
+}
+
+// ---- what moves ----
+
+Moved find_moved(const MoveRecipe& recipe, std::size_t number, const Scene& scene,
+                 const std::vector<Model>& models, std::vector<std::string>& notes) {
+    Moved moved;
+    while (scene.bodies[moved.body].name != recipe.body) ++moved.body;
+    const Body& body = models[moved.body].body;
+    moved.nodes = chosen(body, recipe.nodes, down(scene), fmt::format("move {}", number), "nodes.", notes);
+    Bounds box;
+    for (int node : moved.nodes) box.include(body.positions[std::size_t(node)]);
+    moved.about = recipe.about.value_or(box.empty() ? vec3(0) : box.centre());
+    return moved;
+}
+
+// ---- colliders ----
+
+constexpr double most_field_points = 3e7;
+
+Mesh read_shape(const ColliderRecipe& recipe, const std::filesystem::path& folder) {
+    Mesh mesh = read_mesh(find_data(recipe.surface, folder), recipe.units);
+    weld(mesh);
+    drop_collapsed(mesh);
+    rotate(mesh, recipe.rotate);
+    for (vec3& p : mesh.positions) p += recipe.move;
+    return mesh;
+}
+
+// Triangles without an area have no side to stay on.
+Polygon polygon_of(const Mesh& mesh, float thickness) {
+    Polygon polygon{{}, thickness};
+    for (uvec3 t : mesh.triangles) {
+        const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        if (glm::length(glm::cross(b - a, c - a)) > 0) polygon.triangles.push_back({a, b, c});
+    }
+    return polygon;
+}
+
+DistanceField field_of(const Mesh& mesh, float spacing, const std::string& where) {
+    const vec3 size = bounds(mesh).size();
+    if (!(spacing > 0)) spacing = std::max({size.x, size.y, size.z}) / 64;
+    const dvec3 points = dvec3(size) / double(spacing) + 7.0;
+    if (!(points.x * points.y * points.z <= most_field_points))
+        throw Error(fmt::format("a field with a spacing of {} m would need {:.3g} points", spacing,
+                                points.x * points.y * points.z),
+                    where, "use a larger spacing");
+    return distance_field(mesh, spacing);
+}
+
+vec3 middle(const Plane& plane) { return plane.offset * plane.normal; }
+vec3 middle(const Sphere& sphere) { return sphere.centre; }
+vec3 middle(const Capsule& capsule) { return 0.5f * (capsule.from + capsule.to); }
+vec3 middle(const Box& box) { return box.centre; }
+vec3 middle(const Polygon& polygon) {
+    Bounds box;
+    for (const auto& corners : polygon.triangles)
+        for (vec3 p : corners) box.include(p);
+    return box.centre();
+}
+vec3 middle(const DistanceField& field) { return field.origin + 0.5f * field.spacing * vec3(field.dims - 1); }
+
+void shift(Plane& plane, vec3 by) { plane.offset += glm::dot(plane.normal, by); }
+void shift(Sphere& sphere, vec3 by) { sphere.centre += by; }
+void shift(Capsule& capsule, vec3 by) {
+    capsule.from += by;
+    capsule.to += by;
+}
+void shift(Box& box, vec3 by) { box.centre += by; }
+void shift(Polygon& polygon, vec3 by) {
+    for (auto& corners : polygon.triangles)
+        for (vec3& p : corners) p += by;
+}
+void shift(DistanceField& field, vec3 by) { field.origin += by; }
+
+// Adds a collider; one that moves is given about its pivot, so that it turns about it within a frame too.
+void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& result) {
+    const std::string where = fmt::format("collider {}", result.pivots.size() + 1);
+    Collider collider = recipe.collider;
+    std::optional<vec3> about = recipe.about;
+    if (!recipe.surface.empty()) {
+        const Mesh mesh = read_shape(recipe, scene.folder);
+        if (!about) about = bounds(mesh).centre();
+        if (const auto* polygon = std::get_if<Polygon>(&collider.shape)) {
+            collider.shape = polygon_of(mesh, polygon->thickness);
+        } else {
+            if (const std::size_t open = soundness(mesh).open_edges; open > 0)
+                result.notes.push_back(fmt::format(
+                    "{}: its surface has {} open edges, so what is inside is a guess; close it first", where,
+                    open));
+            collider.shape = field_of(mesh, std::get<DistanceField>(collider.shape).spacing, where);
+        }
+    }
+    vec3 pivot(0);
+    if (!recipe.path.empty()) {
+        pivot = about.value_or(std::visit([](const auto& s) { return middle(s); }, collider.shape));
+        std::visit([&](auto& s) { shift(s, -pivot); }, collider.shape);
+    }
+    result.simulation.colliders.push_back(std::move(collider));
+    result.pivots.push_back(pivot);
 }
 
 }  // namespace
@@ -130,7 +309,9 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
     if (mesh.triangles.empty())
         throw Error("no face is left", recipe.volume.empty() ? recipe.surface : recipe.volume,
                     "ask for more faces");
-    if (volume(mesh) < 0) {
+    // An open sheet has no outside.
+    const bool has_outside = !recipe.sheet || soundness(mesh).open_edges == 0;
+    if (has_outside && volume(mesh) < 0) {
         for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);
         did("turned it right way out");
     }
@@ -155,6 +336,19 @@ Models build(const Scene& scene, const Progress& progress) {
     Models result;
     for (const BodyRecipe& recipe : scene.bodies)
         result.models.push_back(build_one(recipe, scene, result.notes, progress));
+    for (std::size_t i = 0; i < scene.moves.size(); ++i) {
+        result.moves.push_back(find_moved(scene.moves[i], i + 1, scene, result.models, result.notes));
+        pin(result.models[result.moves[i].body].body, result.moves[i].nodes);
+    }
+    assert(scene.simulation.colliders.empty());  // they are recipes still
+    result.simulation = scene.simulation;
+    for (const ColliderRecipe& recipe : scene.colliders) add_collider(recipe, scene, result);
+    for (const ToolRecipe& tool : scene.tools)
+        if (tool.kind == ToolKind::press)
+            result.simulation.contact +=
+                pressure_per_metre({.radius = tool.radius, .stiffness = tool.stiffness});
+        else
+            result.simulation.pull += tool.stiffness;
     return result;
 }
 

@@ -15,14 +15,24 @@ struct Model {
     Embedding embedding;
 };
 
+/// The nodes of a prescribed motion.
+struct Moved {
+    std::size_t body = 0;    // its number
+    std::vector<int> nodes;  // in rising order
+    vec3 about = vec3(0);    // m, the point that their rotation leaves where it is
+};
+
 /// What a scene's recipes make, in the recipes' order.
 struct Models {
     std::vector<Model> models;
+    Simulation simulation;     // the scene's, with its colliders and the strength of its tools
+    std::vector<vec3> pivots;  // m: a collider that moves is given about this point; one that stands, about 0
+    std::vector<Moved> moves;
     std::vector<std::string>
         notes;  // what the user should know: a count that was not met, a size that looks wrong
 };
 
-/// Reads the files, makes surfaces, lattices and embeddings, and pins. Throws Error.
+/// Reads the files, makes surfaces, bodies, embeddings and colliders, and pins. Throws Error.
 Models build(const Scene& scene, const Progress& progress = {});
 
 /// A surface, and what was done to get it, a line each with its counts.
@@ -31,8 +41,8 @@ struct CleanSurface {
     std::vector<std::string> steps;
 };
 
-/// The surface of one recipe: read, cleaned, placed. Not for a plain box, whose surface comes from its
-/// lattice.
+/// The surface of one recipe: read, cleaned, placed. Not for a plain box or a rectangle of cloth, whose
+/// surface comes from its nodes.
 CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
                           const Progress& progress = {});
 

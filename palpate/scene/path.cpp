@@ -4,6 +4,7 @@
 #include "palpate/base/files.h"
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -35,38 +36,78 @@ bool within(const Path& path, double time) {
     return !path.empty() && time >= path.front().time && time <= path.back().time;
 }
 
-vec3 position(const Path& path, double time) {
+namespace {
+
+// The path at a time, rotations still in degrees.
+Waypoint at(const Path& path, double time) {
     const auto next = std::upper_bound(path.begin(), path.end(), time,
                                        [](double t, const Waypoint& w) { return t < w.time; });
-    if (next == path.begin()) return path.front().position;
-    if (next == path.end()) return path.back().position;
+    if (next == path.begin()) return path.front();
+    if (next == path.end()) return path.back();
     const auto last = next - 1;
-    const double part = (time - last->time) / (next->time - last->time);
-    return glm::mix(last->position, next->position, float(part));
+    const float part = float((time - last->time) / (next->time - last->time));
+    return {time, glm::mix(last->position, next->position, part),
+            glm::mix(last->rotation, next->rotation, part)};
 }
 
-Path read_path(const std::filesystem::path& file) {
+}  // namespace
+
+vec3 position(const Path& path, double time) { return at(path, time).position; }
+
+Pose pose(const Path& path, double time) {
+    const Waypoint here = at(path, time);
+    return {here.position, turn(here.rotation)};
+}
+
+mat3 turn(vec3 degrees) {
+    const dvec3 angle = glm::radians(dvec3(degrees));
+    glm::dmat4 turned(1);
+    for (int axis : {2, 1, 0}) {
+        dvec3 about(0);
+        about[axis] = 1;
+        turned = glm::rotate(turned, angle[axis], about);
+    }
+    return mat3(turned);
+}
+
+Path make_path(const std::vector<std::vector<double>>& rows, Rows kind, const RowFails& fail) {
+    const bool poses = kind == Rows::poses;
     Path path;
-    std::istringstream lines(read_text(file));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::vector<double>& v = rows[i];
+        if (v.size() == 7 && !poses)
+            fail(i, "has a rotation, which means nothing there", "keep four numbers");
+        if (v.size() != 4 && v.size() != 7)
+            fail(i, poses ? "is not four or seven numbers" : "is not four numbers",
+                 poses ? "write t, x, y, z and, if it turns, rx, ry, rz" : "write t, x, y, z");
+        if (v.size() != rows[0].size())
+            fail(i, "is not as long as the first", "give all rows a rotation, or none");
+        if (!path.empty() && v[0] <= path.back().time) fail(i, "goes back in time", "sort the rows by time");
+        Waypoint point{v[0], vec3(v[1], v[2], v[3])};
+        if (v.size() == 7) point.rotation = vec3(v[4], v[5], v[6]);
+        if (!(glm::length(point.position) < 1e6f && glm::length(point.rotation) < 1e6f))
+            fail(i, "leads out of the world", "keep it within 1000 km and a million degrees");
+        path.push_back(point);
+    }
+    return path;
+}
+
+Path read_path(const std::filesystem::path& file, Rows kind) {
+    std::vector<std::vector<double>> rows;
+    std::vector<int> lines;  // of each row
+    std::istringstream text(read_text(file));
     int line = 0;
-    for (std::string row; std::getline(lines, row);) {
+    for (std::string row; std::getline(text, row);) {
         if (++line == 1 && row.starts_with("\xef\xbb\xbf")) row.erase(0, 3);  // a byte-order mark
         if (row.find_first_not_of(" \t\r,") == std::string::npos) continue;
-        const std::vector<double> v = numbers(row);
         if (line == 1 && row.find_first_of("0123456789") == std::string::npos) continue;  // a heading
-        if (v.size() != 4)
-            throw Error(fmt::format("line {} is not four numbers", line), file.string(),
-                        "write t, x, y, z in s and m");
-        if (!path.empty() && v[0] <= path.back().time)
-            throw Error(fmt::format("line {} goes back in time", line), file.string(),
-                        "sort the rows by time");
-        path.push_back({v[0], vec3(v[1], v[2], v[3])});
-        if (!(glm::length(path.back().position) < 1e6f))
-            throw Error(fmt::format("line {} leads out of the world", line), file.string(),
-                        "keep it within 1000 km");
+        rows.push_back(numbers(row));
+        lines.push_back(line);
     }
-    if (path.empty()) throw Error("no waypoint", file.string(), "write rows of t, x, y, z in s and m");
-    return path;
+    if (rows.empty()) throw Error("no waypoint", file.string(), "write rows of t, x, y, z in s and m");
+    return make_path(rows, kind, [&](std::size_t row, const std::string& what, const std::string& remedy) {
+        throw Error(fmt::format("line {} {}", lines[row], what), file.string(), remedy);
+    });
 }
 
 }  // namespace palpate

@@ -1,4 +1,6 @@
 #include "palpate/base/files.h"
+#include "palpate/body/influences.h"
+#include "palpate/scene/check.h"
 #include "palpate/scene/scene.h"
 #include "palpate/scene/toml_reader.h"
 
@@ -6,18 +8,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace palpate {
 namespace {
 
 // ---- what a scene file may hold ----
 
-void read_fields(Reader& read, Pin& pin) {
-    read("below", pin.below);
-    read("nodes", pin.nodes);
-    read("near", pin.near);
-    read("radius", pin.radius);
-    read("box", pin.box);
+// A path is the name of a file, or rows of numbers.
+void read_path_value(Reader& read, Path& path, Rows kind, const Source& source,
+                     const std::filesystem::path& folder) {
+    const toml::node* node = read.get("path");
+    if (!node) return;
+    if (const auto file = node->value_exact<std::string>()) {
+        path = read_path(find_data(*file, folder), kind);
+        return;
+    }
+    std::vector<std::vector<double>> rows;
+    read.read("path", *node, rows);
+    if (rows.empty()) source.fail(line_of(*node), "a path without a row", "write [[t, x, y, z], …]");
+    path = make_path(rows, kind, [&](std::size_t row, const std::string& what, const std::string& remedy) {
+        source.fail(line_of(*node), fmt::format("row {} of a path {}", row + 1, what), remedy);
+    });
+}
+
+void read_fields(Reader& read, Choice& choice) {
+    read("below", choice.below);
+    read("nodes", choice.nodes);
+    read("near", choice.near);
+    read("radius", choice.radius);
+    read("box", choice.box);
+}
+
+void read_fields(Reader& read, Region& region) {
+    read_fields(read, region.choice);
+    read("labels", region.labels);
+    read("label", region.label);
+    read("youngs_modulus", region.youngs_modulus);
+    read("stiffness", region.stiffness);
+    read("factor", region.factor);
+}
+
+void read_fields(Reader& read, SpringKinds& springs) {
+    read("structural", springs.structural);
+    read("shear", springs.shear);
+    read("flexion", springs.flexion);
 }
 
 void read_fields(Reader& read, BodyRecipe& body) {
@@ -25,6 +60,8 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("volume", body.volume);
     read("surface", body.surface);
     read("dims", body.dims);
+    read("cloth", body.cloth);
+    read("sheet", body.sheet);
     read("iso", body.iso);
     read("units", body.units);
     read("rotate", body.rotate);
@@ -36,70 +73,157 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("spacing", body.spacing);
     read("youngs_modulus", body.material.youngs_modulus);
     read("stiffness", body.material.stiffness);
+    read.table("springs", [&](Reader& inside) { read_fields(inside, body.springs.emplace()); });
     read("density", body.material.density);
     read("mass", body.material.mass);
     read("damping", body.material.damping);
+    read("link_damping", body.material.link_damping);
     read("links", body.material.links);
     read("mapping", body.mapping);
     read("colour", body.colour);
     read("shine", body.shine);
     read.table("pin", [&](Reader& inside) { read_fields(inside, body.pin); });
+    read.each("region", [&](Reader& inside, int line) {
+        Region& region = body.regions.emplace_back();
+        region.line = line;
+        read_fields(inside, region);
+    });
 }
 
-Collider read_collider(Reader& read, const Source& source, int line) {
-    std::optional<Collider> collider;
-    read.table("plane", [&](Reader& inside) {
-        Plane plane;
-        inside("normal", plane.normal);
-        inside("offset", plane.offset);
-        if (!(glm::length(plane.normal) > 0))
-            source.fail(line, "a plane whose normal is zero", "give it a direction");
-        plane.normal = glm::normalize(plane.normal);
-        collider = Collider{plane};
-    });
-    read.table("sphere", [&](Reader& inside) {
-        Sphere sphere;
-        inside("centre", sphere.centre);
-        inside("radius", sphere.radius);
-        if (!(sphere.radius > 0))
-            source.fail(line, "a sphere whose radius is not above zero", "give it one in m");
-        collider = Collider{sphere};
-    });
-    if (read.has("plane") && read.has("sphere"))
-        source.fail(line, "a collider with two shapes", "write one [[collider]] for each");
-    if (!collider) source.fail(line, "a collider without a shape", "give it a plane or a sphere");
-    return *collider;
+// ---- colliders ----
+
+void read_shape(Reader& read, Plane& plane) {
+    read("normal", plane.normal);
+    read("offset", plane.offset);
 }
 
-// A path is the name of a file, or rows of [t, x, y, z].
-Path read_path_value(const Reader& read, const toml::node& node, const Source& source,
-                     const std::filesystem::path& folder) {
-    if (const auto file = node.value_exact<std::string>()) return read_path(find_data(*file, folder));
-    std::vector<std::vector<double>> rows;
-    read.read("path", node, rows);
-    Path path;
-    for (const auto& row : rows) {
-        if (row.size() != 4)
-            source.fail(line_of(node), "a row of a path is not [t, x, y, z]", "give it four numbers");
-        if (!path.empty() && row[0] <= path.back().time)
-            source.fail(line_of(node), "a path goes back in time", "sort its rows by their first number");
-        path.push_back({row[0], vec3(row[1], row[2], row[3])});
-        if (!(glm::length(path.back().position) < 1e6f))
-            source.fail(line_of(node), "a path leads out of the world", "keep it within 1000 km");
+void read_shape(Reader& read, Sphere& sphere) {
+    read("centre", sphere.centre);
+    read("radius", sphere.radius);
+}
+
+void read_shape(Reader& read, Capsule& capsule) {
+    read("from", capsule.from);
+    read("to", capsule.to);
+    read("radius", capsule.radius);
+}
+
+void read_shape(Reader& read, Box& box, const Source& source) {
+    vec3 size(0), rotate(0);
+    read("centre", box.centre);
+    read("half", box.half);
+    read("size", size);
+    read("rotate", rotate);
+    read("rounding", box.rounding);
+    if (read.has("half") == read.has("size"))
+        source.fail(read.line(), "a box wants half or size", "give it one of them");
+    if (read.has("size")) box.half = 0.5f * size;
+    const mat3 axes = turn(rotate);
+    box.axes = {axes[0], axes[1], axes[2]};
+}
+
+// Where the triangles of a polygon or a field come from.
+void read_file(Reader& read, ColliderRecipe& recipe) {
+    read("surface", recipe.surface);
+    read("units", recipe.units);
+    read("rotate", recipe.rotate);
+    read("move", recipe.move);
+}
+
+void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe, const Source& source) {
+    std::vector<std::vector<vec3>> triangles;
+    read_file(read, recipe);
+    read("triangles", triangles);
+    read("thickness", polygon.thickness);
+    if (read.has("surface") == read.has("triangles"))
+        source.fail(read.line(), "a polygon wants a surface or triangles", "give it one of them");
+    if (read.has("triangles") && (read.has("units") || read.has("rotate") || read.has("move")))
+        source.fail(read.line(), "a polygon's units, rotate and move are for a surface", "remove them");
+    if (read.has("triangles") && triangles.empty())
+        source.fail(read.line(), "a polygon without a triangle", "write [[[…], […], […]], …]");
+    for (const auto& corners : triangles) {
+        if (corners.size() != 3)
+            source.fail(read.line(), "a triangle without three corners", "write [[[…], […], […]], …]");
+        polygon.triangles.push_back({corners[0], corners[1], corners[2]});
     }
-    return path;
+}
+
+void read_shape(Reader& read, DistanceField& field, ColliderRecipe& recipe, const Source& source) {
+    read_file(read, recipe);
+    read("spacing", field.spacing);
+    if (recipe.surface.empty()) source.fail(read.line(), "a field without a surface", "name a closed mesh");
+}
+
+void read_fields(Reader& read, ColliderRecipe& recipe, const Source& source,
+                 const std::filesystem::path& folder) {
+    int shapes = 0;
+    auto shape = [&](const char* key, auto one, auto... more) {
+        read.table(key, [&](Reader& inside) {
+            ++shapes;
+            read_shape(inside, one, more.get()...);
+            recipe.collider.shape = one;
+        });
+    };
+    shape("plane", Plane{});
+    shape("sphere", Sphere{});
+    shape("capsule", Capsule{});
+    shape("box", Box{}, std::cref(source));
+    shape("polygon", Polygon{}, std::ref(recipe), std::cref(source));
+    shape("field", DistanceField{}, std::ref(recipe), std::cref(source));
+    read("friction", recipe.collider.friction);
+    read("margin", recipe.collider.margin);
+    read("colour", recipe.colour);
+    read_path_value(read, recipe.path, Rows::poses, source, folder);
+    read("about", recipe.about);
+    read.finish();  // a misspelt shape is named as such
+    if (shapes > 1) source.fail(recipe.line, "a collider with two shapes", "write one [[collider]] for each");
+    if (shapes == 0)
+        source.fail(recipe.line, "a collider without a shape",
+                    "give it a plane, sphere, capsule, box, polygon or field");
+}
+
+// ---- what moves ----
+
+void read_fields(Reader& read, MoveRecipe& move, const Source& source, const std::filesystem::path& folder) {
+    read("body", move.body);
+    read.table("nodes", [&](Reader& inside) { read_fields(inside, move.nodes); });
+    read_path_value(read, move.path, Rows::poses, source, folder);
+    read("about", move.about);
 }
 
 void read_fields(Reader& read, ToolRecipe& tool, const Source& source, const std::filesystem::path& folder) {
     read("name", tool.name);
     read("kind", tool.kind);
+    if (tool.kind == ToolKind::drag) tool.stiffness = Drag{}.stiffness;
     read("device", tool.device);
     read("radius", tool.radius);
     read("stiffness", tool.stiffness);
     read("from", tool.from);
     read("along", tool.along);
+    read("body", tool.body);
+    read("near", tool.near);
+    read("relative", tool.relative);
     read("colour", tool.colour);
-    if (const toml::node* node = read.get("path")) tool.path = read_path_value(read, *node, source, folder);
+    read_path_value(read, tool.path, Rows::places, source, folder);
+    const bool drags = tool.kind == ToolKind::drag;
+    for (const char* key : {"from", "along"})
+        if (drags && read.has(key))
+            source.fail(tool.line, fmt::format("\"{}\" means nothing to a drag", key), "remove it");
+    for (const char* key : {"body", "near", "relative"})
+        if (!drags && read.has(key))
+            source.fail(tool.line, fmt::format("\"{}\" means nothing to a press", key),
+                        "remove it, or write kind = \"drag\"");
+}
+
+// Wind brings air with it.
+void read_wind(Reader& read, Scene& scene, const Source& source) {
+    std::optional<vec3> velocity;
+    read("velocity", velocity);
+    read_path_value(read, scene.wind, Rows::places, source, scene.folder);
+    if (velocity.has_value() == read.has("path"))
+        source.fail(read.line(), "wind wants a velocity or a path", "give it one of them");
+    if (velocity) scene.wind = {{0, *velocity}};
+    read("density", scene.simulation.air);
 }
 
 // "auto" or seconds.
@@ -123,13 +247,23 @@ void read_look_at(Reader& read, std::variant<vec3, std::string>& look_at) {
 }
 
 void read_fields(Reader& read, Scene& scene, const Source& source) {
+    constexpr float usual_air = 1.2f;  // kg/m³
+    std::optional<float> air;
     read.table("simulation", [&](Reader& inside) {
         inside("backend", scene.simulation.backend);
         inside("integrator", scene.simulation.integrator);
         read_step(inside, scene.simulation.step);
         inside("gravity", scene.simulation.gravity);
         inside("duration", scene.duration);
+        inside("air", air);
     });
+    read.table("wind", [&](Reader& inside) {
+        if (air && inside.has("density"))
+            source.fail(inside.line(), "the air's density is said twice", "remove simulation.air");
+        scene.simulation.air = usual_air;
+        read_wind(inside, scene, source);
+    });
+    if (air) scene.simulation.air = *air;
     read.table("camera", [&](Reader& inside) {
         inside("eye", scene.camera.eye);
         inside("up", scene.camera.up);
@@ -151,7 +285,14 @@ void read_fields(Reader& read, Scene& scene, const Source& source) {
         read_fields(inside, body);
     });
     read.each("collider", [&](Reader& inside, int line) {
-        scene.simulation.colliders.push_back(read_collider(inside, source, line));
+        ColliderRecipe& collider = scene.colliders.emplace_back();
+        collider.line = line;
+        read_fields(inside, collider, source, scene.folder);
+    });
+    read.each("move", [&](Reader& inside, int line) {
+        MoveRecipe& move = scene.moves.emplace_back();
+        move.line = line;
+        read_fields(inside, move, source, scene.folder);
     });
     read.each("tool", [&](Reader& inside, int line) {
         ToolRecipe& tool = scene.tools.emplace_back();
@@ -159,90 +300,6 @@ void read_fields(Reader& read, Scene& scene, const Source& source) {
         read_fields(inside, tool, source, scene.folder);
     });
     read.finish();
-}
-
-// ---- what must hold of it ----
-
-void check(const BodyRecipe& body, const Source& source) {
-    const std::string name = "body " + body.name;
-    auto require = [&](bool holds, const std::string& what, const std::string& remedy) {
-        if (!holds) source.fail(body.line, name + ": " + what, remedy);
-    };
-    const Material& m = body.material;
-    const int sources = !body.volume.empty() + !body.surface.empty() + body.dims.has_value();
-    require(sources == 1, "wants exactly one of volume, surface and dims", "give it one");
-    require(body.volume.empty() || body.iso, "a volume without iso", "say at which value its surface lies");
-    require((m.youngs_modulus > 0) != (m.stiffness > 0),
-            "wants youngs_modulus or stiffness, one of them above zero", "give it one");
-    require((m.density > 0) != (m.mass > 0), "wants density or mass, one of them above zero", "give it one");
-    require(std::min(
-                {m.youngs_modulus, m.stiffness, m.density, m.mass, m.damping, body.spacing, body.shine}) >= 0,
-            "a negative number where none makes sense", "use a positive one");
-    require(body.nodes > 0 && body.nodes <= 10'000'000, "nodes is not from 1 to 10 million",
-            "choose a number there");
-    require(body.faces >= 0 && body.smooth.value_or(0) >= 0 && body.smooth.value_or(0) <= 1000,
-            "faces or smooth is out of range", "use 0 or more, and at most 1000 passes");
-    if (body.dims) {
-        const ivec3 d = *body.dims;
-        require(std::min({d.x, d.y, d.z}) >= 1 && double(d.x) * d.y * d.z <= 1e7,
-                "dims is not at least 1 along each axis and at most 10 million nodes", "change it");
-        require(body.spacing > 0, "dims without spacing", "say how far apart the nodes are, in m");
-    }
-    require(
-        !body.dims || (!body.iso && !body.units && !body.smooth && body.faces == 0 && body.rotate == vec3(0)),
-        "dims beside iso, units, smooth, faces or rotate, which mean nothing there", "remove them");
-    require(body.volume.empty() == !body.iso, "iso without a volume", "remove it");
-    require(body.pin.near || body.pin.radius == 0, "pin.radius without pin.near", "say around which point");
-    require(body.pin.box.empty() || body.pin.box.size() == 2, "pin.box is not two corners",
-            "write [[…], […]]");
-    if (body.pin.below)
-        require(*body.pin.below >= 0 && *body.pin.below <= 1, "pin.below is not from 0 to 1",
-                "0.15 is the lowest 15 %");
-}
-
-void check(const ToolRecipe& tool, const Source& source) {
-    auto require = [&](bool holds, const std::string& what, const std::string& remedy) {
-        if (!holds) source.fail(tool.line, "tool " + tool.name + ": " + what, remedy);
-    };
-    require(tool.kind == "press", "no kind \"" + tool.kind + "\"", "the kind there is: press");
-    require(tool.device == "script", "no device \"" + tool.device + "\"", "the device there is: script");
-    require(tool.radius > 0 && tool.stiffness > 0, "radius and stiffness must be above zero",
-            "give both, in m and N/m");
-    require(!tool.path.empty(), "no path", "give it a file or rows of [t, x, y, z]");
-    require(!tool.from || glm::length(tool.along) > 0, "along is zero", "give it a direction");
-}
-
-// Names become parts of file names and cells of tables.
-void check_name(const std::string& name, int line, const Source& source) {
-    for (unsigned char c : name)
-        if (c < ' ' || std::string_view("/\\,\"").find(char(c)) != std::string_view::npos)
-            source.fail(line, "a name with a slash, a comma, a quote or an unprintable letter",
-                        "choose another");
-}
-
-void check(Scene& scene, const Source& source) {
-    if (scene.bodies.empty()) source.fail(0, "no body", "add a [[body]]");
-    std::set<std::string> names;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-        BodyRecipe& body = scene.bodies[i];
-        if (body.name.empty()) body.name = fmt::format("body{}", i + 1);
-        check_name(body.name, body.line, source);
-        if (!names.insert(body.name).second)
-            source.fail(body.line, "a second body named " + body.name, "give each its own name");
-        check(body, source);
-    }
-    for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-        if (scene.tools[i].name.empty()) scene.tools[i].name = fmt::format("tool{}", i + 1);
-        check_name(scene.tools[i].name, scene.tools[i].line, source);
-        check(scene.tools[i], source);
-    }
-    if (scene.tools.size() > 8) source.fail(0, "more than 8 tools", "use fewer");
-    if (const auto* name = std::get_if<std::string>(&scene.look_at); name && !names.contains(*name))
-        source.fail(0, "camera.look_at names no body: " + *name, "name one of the bodies, or give a point");
-    if (!(scene.duration > 0 && scene.duration <= 1e6))
-        source.fail(0, "duration is not above zero", "give it in seconds");
-    if (!(scene.camera.angle > 0 && scene.camera.angle < 180))
-        source.fail(0, "camera.angle is not between 0 and 180 degrees", "35 is usual");
 }
 
 // ---- changes from the command line ----

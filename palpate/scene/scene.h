@@ -20,20 +20,36 @@ namespace palpate {
 // makes the bodies. docs/scene-format.md describes the file; each field below is a key of the same name, and
 // `line` says where in the file it came from, for messages.
 
-/// Nodes to hold fast; several ways may be given at once.
-struct Pin {
+/// Which nodes of a body, at rest; several ways may be given at once.
+struct Choice {
     std::optional<float> below;  // the lowest part of the body's height along gravity: 0.15 is 15 %
     std::vector<int> nodes;      // by number
     std::optional<vec3> near;    // around a point, m ...
     float radius = 0;            // ... within this, m; 0 takes the nearest node alone
     std::vector<vec3> box;       // two opposite corners, m
+
+    bool empty() const { return !below && nodes.empty() && !near && box.empty(); }
+};
+
+/// A part of a body that is harder or softer than the rest: nodes of a choice, or those that a label volume
+/// gives this label, and one of the last three. Where regions overlap, the last counts.
+struct Region {
+    Choice choice;               // its fields are keys of the region itself
+    std::string labels;          // a file of voxels, in the body's units, turned and moved as the body is
+    std::optional<float> label;  // the value of those that belong to the region
+    float youngs_modulus = 0;    // Pa
+    float stiffness = 0;         // N/m of each spring
+    float factor = 0;            // times as stiff as the body
+    int line = 0;
 };
 
 struct BodyRecipe {
     std::string name;
     std::string volume;          // a file of voxels; or
     std::string surface;         // a file of triangles; or
-    std::optional<ivec3> dims;   // a plain box of so many nodes along each axis
+    std::optional<ivec3> dims;   // a plain box of so many nodes along each axis; or
+    std::optional<ivec2> cloth;  // a rectangle of cloth
+    bool sheet = false;          // the surface itself is cloth: a node a vertex, a spring an edge
     std::optional<float> iso;    // the value at the surface of a volume; half-integer for integer volumes
     std::optional<Units> units;  // of the file; volumes default to millimetres, surfaces to metres
     vec3 rotate = vec3(0);       // degrees about x, then y, then z
@@ -43,39 +59,85 @@ struct BodyRecipe {
     int faces = 0;               // simplify the surface to about this many; 0 leaves it
     int nodes = 20'000;          // of the lattice; or
     float spacing = 0;           // m
-    Material material;           // its fields are keys of the body itself
-    Pin pin;
+    Material material;           // its fields are keys of the body itself; of cloth, density is in kg/m²
+    std::optional<SpringKinds> springs;  // of cloth, or of the volume of 2012 with dims
+    Choice pin;                          // nodes to hold fast
+    std::vector<Region> regions;
     Mapping mapping = Mapping::automatic;
     vec3 colour = vec3(0.80f, 0.55f, 0.50f);  // linear red, green, blue from 0 to 1
     float shine = 0.4f;                       // 0 dull, 1 wet
     int line = 0;
+
+    bool is_cloth() const { return cloth || sheet; }
 };
 
-/// A round tip that follows a path; it is there from the path's first time to its last.
+/// A collider. Where its shape lies in a file, build() fills it in: a Polygon's triangles, or a DistanceField
+/// of which only the spacing is given here.
+struct ColliderRecipe {
+    Collider collider;
+    std::string surface;          // a file of triangles ...
+    Units units = Units::metres;  // ... in these
+    vec3 rotate = vec3(0);        // degrees about x, then y, then z
+    vec3 move = vec3(0);          // m, after turning
+    Path path;                    // shift and rotation over time; empty: it stands still
+    std::optional<vec3> about;  // the point that the rotation leaves where it is; else the shape's own middle
+    vec3 colour = vec3(0.5f);
+    int line = 0;
+};
+
+/// Prescribed motion of some nodes.
+struct MoveRecipe {
+    std::string body;  // may be left out where there is only one
+    Choice nodes;
+    Path path;  // shift and rotation over time
+    std::optional<vec3>
+        about;  // the point that the rotation leaves where it is; else the nodes' middle at rest
+    int line = 0;
+};
+
+enum class ToolKind {
+    press,  // a round tip that pushes
+    drag,   // a spring that pulls one node along
+};
+
+inline std::span<const Named<ToolKind>> names(ToolKind) {
+    static constexpr Named<ToolKind> all[] = {{ToolKind::press, "press"}, {ToolKind::drag, "drag"}};
+    return all;
+}
+
+/// What follows a path and acts on bodies; it is there from the path's first time to its last.
 struct ToolRecipe {
     std::string name;
-    std::string kind = "press";
+    ToolKind kind = ToolKind::press;
     std::string device = "script";
-    float radius = 0.01f;   // m
-    float stiffness = 400;  // N/m, see Press
+    float radius = 0.01f;   // m; of a drag: how large it is drawn
+    float stiffness = 400;  // N/m, see Press and Drag; 50 for a drag
     Path path;              // s, m; a file of rows or the rows themselves
+    vec3 colour = vec3(0.25f, 0.45f, 0.75f);
+    // ---- of a press ----
     /// If given, the path starts where the tip, moved from this point ...
     std::optional<vec3> from;
     /// ... in this direction, first touches a surface; the path's positions are counted from there.
     vec3 along = vec3(0, -1, 0);
-    vec3 colour = vec3(0.25f, 0.45f, 0.75f);
+    // ---- of a drag ----
+    std::string body;          // whose node it pulls; empty: the nearest body's
+    std::optional<vec3> near;  // it takes the node nearest to this point; else to the path's first position
+    bool relative = false;     // the path's positions are counted from where that node is then
     int line = 0;
 };
 
 struct Scene {
     std::string name;              // of the file, without its ending
     std::filesystem::path folder;  // that files are named from
-    Simulation simulation;         // colliders included; `frame` and `contact` are the program's own
+    Simulation simulation;         // without what build() adds: colliders, contact and pull
     double duration = 5;           // s, of a run that is not told otherwise
+    Path wind;                     // its velocity over time, m/s; empty: none
     Camera camera;
     std::variant<vec3, std::string> look_at = vec3(0);  // a point, or the name of a body
     Light light;
     std::vector<BodyRecipe> bodies;
+    std::vector<ColliderRecipe> colliders;
+    std::vector<MoveRecipe> moves;
     std::vector<ToolRecipe> tools;
 };
 

@@ -4,6 +4,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/names.h"
 #include "palpate/base/vectors.h"
+#include "palpate/scene/check.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -33,15 +34,6 @@ inline int edits(std::string_view a, std::string_view b) {
     }
     return row.back();
 }
-
-/// Where a value stands, for messages.
-struct Source {
-    std::string file;
-
-    [[noreturn]] void fail(int line, const std::string& what, const std::string& remedy) const {
-        throw Error(what, line > 0 ? fmt::format("{}, line {}", file, line) : file, remedy);
-    }
-};
 
 inline int line_of(const toml::node& node) { return int(node.source().begin.line); }
 
@@ -87,6 +79,7 @@ class Reader {
     }
 
     bool has(const char* key) const { return table_.contains(key); }
+    int line() const { return line_of(table_); }
     const toml::node* get(const char* key) {
         known_.insert(key);
         return table_.get(key);
@@ -136,11 +129,12 @@ class Reader {
         value = float(wide);
         if (!std::isfinite(value)) wrong(key, node, "a number of a sensible size");
     }
-    template <class T>
-    void read(std::string_view key, const toml::node& node, glm::vec<3, T>& value) const {
+    template <int L, class T>
+    void read(std::string_view key, const toml::node& node, glm::vec<L, T>& value) const {
         const toml::array* array = node.as_array();
-        if (!array || array->size() != 3) wrong(key, node, "three numbers in brackets");
-        for (int i = 0; i < 3; ++i) read(key, (*array)[std::size_t(i)], value[i]);
+        if (!array || array->size() != L)
+            wrong(key, node, L == 2 ? "two numbers in brackets" : "three numbers in brackets");
+        for (int i = 0; i < L; ++i) read(key, (*array)[std::size_t(i)], value[i]);
     }
     template <class T>
     void read(std::string_view key, const toml::node& node, std::vector<T>& value) const {

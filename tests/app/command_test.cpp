@@ -47,8 +47,10 @@ const std::string brain = "/usr/share/mricron/templates/ch2bet.nii.gz";
 bool have_brain() { return std::filesystem::exists(brain); }
 
 TEST(Command, UsageErrorsEndWithTwo) {
-    for (const char* arguments : {"", "fly", "run", "run box --frames many", "run box --size 12",
-                                  "run box --fast", "list", "import x.ply", "run box --frames 1 --steps 1"})
+    for (const char* arguments :
+         {"", "fly", "run", "run box --frames many", "run box --size 12", "run box --fast", "list",
+          "import x.ply", "run box --frames 1 --steps 1", "run box --until-rest soon",
+          "run box --until-rest none", "run box --until-rest --frames 3"})
         EXPECT_EQ(palpate(arguments).status, 2) << arguments;
     EXPECT_EQ(palpate("--help").status, 0);
     EXPECT_EQ(palpate("run --help").status, 0);
@@ -68,6 +70,16 @@ TEST(Command, RunsAndReports) {
     EXPECT_EQ(outcome.status, 0) << outcome.said;
     EXPECT_NE(outcome.said.find("nodes, springs"), std::string::npos);
     EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": false"), std::string::npos);
+}
+
+TEST(Command, RunsUntilRest) {
+    for (const char* arguments : {"run box --until-rest", "run box --until-rest speed"}) {
+        const Outcome outcome = palpate(std::string(arguments) + " --set body.beam.damping=20");
+        EXPECT_EQ(outcome.status, 0) << outcome.said;
+        EXPECT_NE(outcome.said.find(", then at rest"), std::string::npos) << outcome.said;
+    }
+    const Outcome one = palpate("run box --until-rest move");
+    EXPECT_NE(one.said.find("in 1 frames, then at rest"), std::string::npos) << one.said;
 }
 
 TEST(Command, ScenesThatDoNotFit) {

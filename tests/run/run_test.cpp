@@ -4,6 +4,7 @@
 #include "palpate/base/files.h"
 #include "palpate/base/pipe.h"
 #include "palpate/mesh/read.h"
+#include "palpate/mesh/write.h"
 #include "palpate/run/plot.h"
 #include "palpate/run/tip.h"
 #include "tests/scratch.h"
@@ -115,10 +116,27 @@ TEST(Run, WritesWhatIsAskedFor) {
     EXPECT_EQ(std::distance(files, {}), 3);
     if (film) EXPECT_GT(std::filesystem::file_size(settings.video), 1000u);
     const std::string json = read_text(settings.report);
-    for (const char* key :
-         {"backend", "integrator", "threads", "nodes", "springs", "vertices", "faces", "steps", "step_s",
-          "simulate", "map", "render", "frames_per_second", "kinetic_energy_j", "elastic_energy_j",
-          "largest_speed_m_s", "deepest_indentation_m", "largest_force_n", "diverged"})
+    for (const char* key : {"backend",
+                            "integrator",
+                            "threads",
+                            "nodes",
+                            "springs",
+                            "vertices",
+                            "faces",
+                            "steps",
+                            "step_s",
+                            "simulate",
+                            "map",
+                            "render",
+                            "frames_per_second",
+                            "kinetic_energy_j",
+                            "elastic_energy_j",
+                            "largest_speed_m_s",
+                            "deepest_indentation_m",
+                            "largest_force_n",
+                            "diverged",
+                            "at_rest",
+                            "rest_s"})
         EXPECT_NE(json.find('"' + std::string(key) + '"'), std::string::npos) << key;
     EXPECT_NE(read_text(settings.plot).find("polyline"), std::string::npos);
     EXPECT_EQ(read_mesh(settings.surface, Units::metres).positions.size(), report.bodies[0].vertices);
@@ -131,6 +149,72 @@ TEST(Run, WritesWhatIsAskedFor) {
     int count = 0;
     while (std::getline(lines, line)) ++count;
     EXPECT_EQ(count, 11 * 6 * 11);
+}
+
+// Every kind of collider, one that turns, and a thread that has no surface.
+TEST(Run, DrawsWhatThereIs) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(0.02f), 16), scratch / "ball.ply");
+    const std::string text = pressed + R"(
+[[body]]
+name = "rope"
+cloth = [1, 5]
+spacing = 0.01
+mass = 0.01
+move = [0, 0.1, 0]
+pin = { nodes = [4] }
+[[tool]]
+kind = "drag"
+body = "rope"
+path = [[0, 0.05, 0.1, 0], [1, 0.05, 0.1, 0]]
+stiffness = 1
+[[collider]]
+plane = { offset = -0.05 }
+path = [[0, 0, 0, 0, 0, 0, 0], [1, 0, 0.01, 0, 0, 0, 10]]
+[[collider]]
+sphere = { centre = [0.2, 0, 0], radius = 0.02 }
+[[collider]]
+capsule = { from = [0.2, 0, 0.05], to = [0.2, 0, 0.1], radius = 0.02 }
+[[collider]]
+box = { centre = [0.2, 0, 0.2], half = [0.02, 0.02, 0.02], rounding = 0.005 }
+path = [[0, 0, 0, 0, 0, 0, 0], [1, 0, 0.1, 0, 0, 90, 0]]
+[[collider]]
+polygon = { triangles = [[[0.2, 0, 0.3], [0.2, 0, 0.35], [0.2, 0.05, 0.3]]] }
+[[collider]]
+field = { surface = "ball.ply", move = [-0.1, 0, 0] }
+)";
+    RunSettings settings;
+    settings.frames = 6;
+    settings.width = 160;
+    settings.height = 90;
+    settings.images = scratch / "stills";
+    settings.image_every = 0.05;
+    settings.lattice = true;
+    try {
+        const Report report = run(parse_scene(text, "all.toml", scratch / "."), settings);
+        EXPECT_FALSE(report.diverged);
+        EXPECT_EQ(report.pictures, 3);
+    } catch (const Error& error) {
+        if (std::string(error.what()).find("OpenGL") == std::string::npos) throw;
+        GTEST_SKIP() << "not available: " << error.what();
+    }
+    EXPECT_NE(read_text(scratch / "stills" / "all-00.00s.png"),
+              read_text(scratch / "stills" / "all-00.10s.png"));
+}
+
+TEST(Run, TheReportSaysWhetherItCameToRest) {
+    Scratch scratch;
+    RunSettings settings;
+    settings.report = scratch / "report.json";
+    settings.frames = 2;
+    run(scene(), settings);
+    EXPECT_NE(read_text(settings.report).find("\"at_rest\": false,\n  \"rest_s\": null"), std::string::npos);
+    settings.frames.reset();
+    settings.until_rest = Rest::speed;
+    const Report report = run(scene({"simulation.duration=1"}), settings);
+    ASSERT_TRUE(report.rest.has_value());
+    EXPECT_GE(*report.rest, 1.6 - 1e-6);  // half a second after the finger has gone
+    EXPECT_NE(read_text(settings.report).find("\"at_rest\": true,\n  \"rest_s\": "), std::string::npos);
 }
 
 TEST(Run, DivergenceIsReportedAndNotDrawn) {

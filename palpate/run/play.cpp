@@ -1,0 +1,220 @@
+#include "palpate/run/play.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/mesh/repair.h"
+#include "palpate/run/run.h"
+
+#include <fmt/format.h>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+Report::Body describe(const Model& model) {
+    Report::Body body;
+    body.name = model.body.name;
+    body.nodes = model.body.count();
+    body.pinned =
+        std::size_t(std::count(model.body.inverse_mass.begin(), model.body.inverse_mass.end(), 0.0f));
+    body.springs = spring_ends(model.body).size();
+    body.cells = model.body.cells.size();
+    body.vertices = model.surface.positions.size();
+    body.faces = model.surface.triangles.size();
+    body.spacing = model.body.spacing;
+    body.mass = mass(model.body);
+    const bool open = !model.body.faces.empty() && soundness(model.surface).open_edges > 0;
+    body.volume = open ? 0 : volume(model.surface);
+    return body;
+}
+
+// Where the nodes of a prescribed motion shall be at a time.
+std::vector<vec3> places(const Moved& moved, const Path& path, const Body& body, double time) {
+    const Pose at = pose(path, time);
+    std::vector<vec3> to;
+    for (int node : moved.nodes) {
+        const vec3 rest = body.positions[std::size_t(node)];
+        to.push_back(moved.about + at.position + at.rotation * (rest - moved.about));
+    }
+    return to;
+}
+
+}  // namespace
+
+// On each body: the tips, which all feel, and what is its own.
+struct Play::Acting {
+    struct OnBody {
+        std::vector<Drag> drags;
+        std::vector<std::size_t> tool_of_drag;
+        std::vector<Move> moves;
+    };
+    std::vector<Press> presses;
+    std::vector<std::size_t> tool_of_press;
+    std::vector<OnBody> bodies;
+    std::vector<std::vector<vec3>> places;  // that the moves lead to
+    std::vector<Motion> colliders;
+    vec3 wind = vec3(0);
+};
+
+Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double seconds) {
+    Motion motion;
+    motion.position = pivot + from.position;
+    motion.rotation = from.rotation;
+    motion.velocity = (to.position - from.position) / float(seconds);
+    glm::dquat way = glm::quat_cast(glm::dmat3(to.rotation) * glm::transpose(glm::dmat3(from.rotation)));
+    if (way.w < 0) way = -way;
+    const dvec3 axis(way.x, way.y, way.z);
+    if (const double sine = glm::length(axis); sine > 0)
+        motion.spin = vec3(axis / sine * (2 * std::atan2(sine, way.w) / seconds));
+    return motion;
+}
+
+Play::Play(const Scene& scene, const Models& made, Report& report)
+    : scene_(scene), made_(made), report_(report), skins_(made.models.size()), tools_(scene.tools.size()) {
+    Simulation simulation = made.simulation;
+    simulation.frame = frame_seconds;
+    for (const Model& model : made.models) {
+        solvers_.push_back(make_solver(model.body, simulation));
+        report.bodies.push_back(describe(model));
+        for (const ToolRecipe& tool : scene.tools)
+            if (tool.kind == ToolKind::press && tool.radius < 0.7f * model.body.spacing)
+                report.notes.push_back(
+                    fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
+                                "between the nodes; use more nodes",
+                                tool.name, model.body.name));
+    }
+    for (const ToolRecipe& tool : scene.tools) {
+        if (tool.kind == ToolKind::press)
+            handles_.emplace_back(Tip(tool));
+        else
+            handles_.emplace_back(Grip(tool));
+        report.tools.emplace_back().name = tool.name;
+    }
+    for (std::size_t m = 0; m < skins_.size(); ++m) skins_[m].triangles = &made.models[m].surface.triangles;
+    map();
+}
+
+int Play::steps_per_frame() const {
+    double shortest = frame_seconds;
+    for (const auto& solver : solvers_) shortest = std::min(shortest, solver->longest_step({}));
+    return steps_within(frame_seconds, shortest);
+}
+
+std::vector<State> Play::states() const {
+    std::vector<State> states;
+    for (const auto& solver : solvers_) states.push_back(solver->state());
+    return states;
+}
+
+std::vector<Motion> Play::colliders(double time, double seconds) const {
+    std::vector<Motion> motions(scene_.colliders.size());
+    for (std::size_t c = 0; c < motions.size(); ++c)
+        if (const Path& path = scene_.colliders[c].path; !path.empty())
+            motions[c] =
+                motion_between(pose(path, time), pose(path, time + seconds), made_.pivots[c], seconds);
+    return motions;
+}
+
+bool Play::advance(double time, double seconds) {
+    const Acting on = acting(time, seconds);
+    {
+        Timed timed(report_.seconds.simulate);
+        if (!step(seconds, on)) return false;
+    }
+    map();
+    record(on, time + seconds, seconds);
+    return true;
+}
+
+Play::Acting Play::acting(double time, double seconds) {
+    Acting on;
+    on.bodies.resize(solvers_.size());
+    for (std::size_t t = 0; t < handles_.size(); ++t) {
+        if (auto* tip = std::get_if<Tip>(&handles_[t])) {
+            const auto press = tip->press(time, seconds, skins_);
+            if (!press) continue;
+            on.presses.push_back(*press);
+            on.tool_of_press.push_back(t);
+        } else {
+            Grip& grip = std::get<Grip>(handles_[t]);
+            const auto drag = grip.drag(time, seconds, made_.models, solvers_);
+            if (!drag) continue;
+            on.bodies[grip.body()].drags.push_back(*drag);
+            on.bodies[grip.body()].tool_of_drag.push_back(t);
+        }
+    }
+    for (std::size_t i = 0; i < made_.moves.size(); ++i) {
+        const Moved& moved = made_.moves[i];
+        on.places.push_back(
+            places(moved, scene_.moves[i].path, made_.models[moved.body].body, time + seconds));
+    }
+    for (std::size_t i = 0; i < made_.moves.size(); ++i)
+        on.bodies[made_.moves[i].body].moves.push_back({made_.moves[i].nodes, on.places[i]});
+    on.colliders = colliders(time, seconds);
+    if (!scene_.wind.empty()) on.wind = position(scene_.wind, time + seconds / 2);
+    return on;
+}
+
+bool Play::step(double seconds, const Acting& on) {
+    std::vector<State> before;
+    std::vector<Stats> stats;
+    for (std::size_t m = 0; m < solvers_.size(); ++m) {
+        if (m + 1 < solvers_.size()) before.push_back(solvers_[m]->save());
+        stats.push_back(solvers_[m]->step(seconds, {.presses = on.presses,
+                                                    .drags = on.bodies[m].drags,
+                                                    .moves = on.bodies[m].moves,
+                                                    .colliders = on.colliders,
+                                                    .wind = on.wind}));
+        if (!stats[m].diverged) continue;
+        report_.notes.push_back(
+            fmt::format("body {} diverged with steps of {:.4g} s", report_.bodies[m].name, stats[m].step));
+        for (std::size_t other = 0; other < m; ++other) solvers_[other]->restore(before[other]);
+        return false;
+    }
+    stats_ = std::move(stats);
+    return true;
+}
+
+void Play::map() {
+    Timed timed(report_.seconds.map);
+    for (std::size_t m = 0; m < skins_.size(); ++m)
+        deform(made_.models[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals);
+}
+
+void Play::record(const Acting& on, double time, double seconds) {
+    std::vector<dvec3> impulses(handles_.size(), dvec3(0));
+    tools_.assign(handles_.size(), std::nullopt);
+    for (std::size_t t : on.tool_of_press) tools_[t] = {std::get<Tip>(handles_[t]).centre(time), {}};
+    for (std::size_t m = 0; m < solvers_.size(); ++m) {
+        const Stats& stats = stats_[m];
+        for (std::size_t p = 0; p < on.presses.size(); ++p)
+            impulses[on.tool_of_press[p]] += stats.reactions[p];
+        for (std::size_t d = 0; d < on.bodies[m].drags.size(); ++d) {
+            const std::size_t t = on.bodies[m].tool_of_drag[d];
+            impulses[t] += stats.pulls[d];
+            const std::size_t node = std::size_t(on.bodies[m].drags[d].node);
+            tools_[t] = {std::get<Grip>(handles_[t]).centre(time), nodes(m).positions[node]};
+        }
+        Report::Body& body = report_.bodies[m];
+        body.steps += stats.steps;
+        if (body.step == 0 || stats.step < body.step) body.step = stats.step;
+        body.largest_speed = std::max(body.largest_speed, stats.largest_speed);
+        body.inverted_cells =
+            std::max(body.inverted_cells, inverted_cells(made_.models[m].body, nodes(m).positions));
+    }
+    for (std::size_t t = 0; t < handles_.size(); ++t) {
+        const auto* tip = std::get_if<Tip>(&handles_[t]);
+        const double force = glm::length(impulses[t]) / seconds;
+        const double depth = tip && tools_[t] ? tip->indentation(tools_[t]->centre, skins_) : 0;
+        Report::Tool& tool = report_.tools[t];
+        tool.largest_force = std::max(tool.largest_force, force);
+        tool.deepest_indentation = std::max(tool.deepest_indentation, depth);
+        tool.time.push_back(time);
+        tool.force.push_back(force);
+        tool.indentation.push_back(depth);
+    }
+}
+
+}  // namespace palpate

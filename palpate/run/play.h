@@ -1,0 +1,70 @@
+#pragma once
+#include "palpate/run/grip.h"
+#include "palpate/run/report.h"
+#include "palpate/run/tip.h"
+#include "palpate/scene/build.h"
+#include "palpate/solver/solver.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace palpate {
+
+/// A scene in motion: a solver and a skin for each body, a tip or a grip for each tool. What it does goes
+/// into the report.
+class Play {
+ public:
+    Play(const Scene& scene, const Models& made, Report& report);
+
+    /// Simulates and maps `seconds` from `time` on. False if a body diverged: then all are as they were
+    /// before.
+    bool advance(double time, double seconds);
+
+    /// Steps that the busiest body takes for a frame of 1/60 s.
+    int steps_per_frame() const;
+
+    /// What the solvers said of the last frame, one a body; empty before the first.
+    std::span<const Stats> stats() const { return stats_; }
+
+    /// The bodies at one moment, each with its velocities at the time of its positions.
+    std::vector<State> states() const;
+
+    // ---- what there is to see ----
+
+    const std::vector<Skin>& skins() const { return skins_; }
+    Nodes nodes(std::size_t body) const { return solvers_[body]->nodes(); }
+
+    /// Where a tool is, if it is there, and the node that it drags, if it does.
+    struct Tool {
+        vec3 centre;
+        std::optional<vec3> held;
+    };
+    const std::vector<std::optional<Tool>>& tools() const { return tools_; }
+
+    /// Where the colliders are at a time, and how they move on to their places `seconds` later.
+    std::vector<Motion> colliders(double time, double seconds) const;
+
+ private:
+    struct Acting;  // all that acts during a frame
+    Acting acting(double time, double seconds);
+    bool step(double seconds, const Acting& on);
+    void map();
+    void record(const Acting& on, double time, double seconds);
+
+    const Scene& scene_;
+    const Models& made_;
+    Report& report_;
+    std::vector<std::unique_ptr<Solver>> solvers_;
+    std::vector<Stats> stats_;
+    std::vector<Skin> skins_;
+    std::vector<std::variant<Tip, Grip>> handles_;  // one a tool
+    std::vector<std::optional<Tool>> tools_;
+};
+
+/// How a collider moves that is given about its pivot: evenly from one pose to the next.
+Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double seconds);
+
+}  // namespace palpate

@@ -1,0 +1,121 @@
+#include "palpate/run/show.h"
+
+#include "palpate/base/files.h"
+#include "palpate/gl/context.h"
+#include "palpate/render/shapes.h"
+
+#include <fmt/format.h>
+
+namespace palpate {
+namespace {
+
+constexpr int frames_per_picture = 2;  // of a film: 30 pictures a second
+constexpr float collider_shine = 0.4f;
+
+vec3 middle(const Model& model) {
+    Bounds box;
+    for (vec3 p : model.surface.positions) box.include(p);
+    if (box.empty())
+        for (vec3 p : model.body.positions) box.include(p);
+    return box.centre();
+}
+
+}  // namespace
+
+Show::Show(const Scene& scene, const Models& made, const RunSettings& settings)
+    : scene_(scene), made_(made), settings_(settings), renderer_({settings.width, settings.height}) {
+    for (const Model& model : made.models) meshes_.push_back(renderer_.add(model.surface));
+    for (const Collider& collider : made.simulation.colliders) {
+        Shape& shape = shapes_.emplace_back();
+        shape.rest = shape.now = shape_mesh(collider);
+        if (!shape.rest.triangles.empty()) shape.mesh = renderer_.add(shape.rest);
+    }
+    if (!settings.video.empty())
+        film_ =
+            std::make_unique<Film>(settings.video, settings.width, settings.height, 60 / frames_per_picture);
+    if (!settings.images.empty()) make_folder(settings.images);
+    if (settings.lattice)
+        for (const Model& model : made.models) springs_.push_back(spring_ends(model.body));
+    camera_ = scene.camera;
+    camera_.look_at = looked_at();
+}
+
+const std::string& Show::renderer() const { return renderer_.context().renderer(); }
+
+bool Show::frame_done(int number, const Play& play) {
+    const double time = number * frame_seconds;
+    const bool film_wants = film_ && number % frames_per_picture == 0;
+    const bool images_want = !settings_.images.empty() && time >= next_image_ - 1e-9;
+    if (!film_wants && !images_want) return false;
+    renderer_.draw(picture(time, play));
+    const Image image = renderer_.image();
+    if (film_wants) film_->add(image);
+    if (images_want) {
+        write_png(image, settings_.images / fmt::format("{}-{:05.2f}s.png", scene_.name, time));
+        next_image_ += settings_.image_every;
+    }
+    return true;
+}
+
+void Show::finish() {
+    if (film_) film_->finish();
+}
+
+vec3 Show::looked_at() const {
+    if (const auto* point = std::get_if<vec3>(&scene_.look_at)) return *point;
+    for (const Model& model : made_.models)
+        if (model.body.name == std::get<std::string>(scene_.look_at)) return middle(model);
+    return vec3(0);
+}
+
+Picture Show::picture(double time, const Play& play) {
+    Picture picture;
+    picture.camera = camera_;
+    picture.light = scene_.light;
+    for (std::size_t m = 0; m < made_.models.size(); ++m) {
+        const BodyRecipe& recipe = scene_.bodies[m];
+        const Skin& skin = play.skins()[m];
+        picture.surfaces.push_back({meshes_[m], skin.positions, skin.normals, {recipe.colour, recipe.shine}});
+        if (settings_.lattice) picture.wires.push_back({play.nodes(m).positions, springs_[m], {}});
+    }
+    add_tools(play, picture);
+    add_colliders(play.colliders(time, frame_seconds), picture);
+    return picture;
+}
+
+void Show::add_tools(const Play& play, Picture& picture) {
+    drag_points_.clear();
+    drag_lines_.clear();
+    for (std::size_t t = 0; t < play.tools().size(); ++t) {
+        const auto& tool = play.tools()[t];
+        if (!tool) continue;
+        picture.balls.push_back({tool->centre, scene_.tools[t].radius, scene_.tools[t].colour});
+        if (!tool->held) continue;
+        drag_lines_.push_back(uvec2(drag_points_.size(), drag_points_.size() + 1));
+        drag_points_.insert(drag_points_.end(), {*tool->held, tool->centre});
+    }
+    if (!drag_lines_.empty()) picture.wires.push_back({drag_points_, drag_lines_, {}});
+}
+
+void Show::add_colliders(const std::vector<Motion>& motions, Picture& picture) {
+    for (std::size_t c = 0; c < motions.size(); ++c) {
+        const Motion& motion = motions[c];
+        const auto& shape = made_.simulation.colliders[c].shape;
+        const vec3 colour = scene_.colliders[c].colour;
+        if (const auto* plane = std::get_if<Plane>(&shape)) {
+            const vec3 normal = motion.rotation * plane->normal;
+            picture.grounds.push_back({normal, plane->offset + glm::dot(normal, motion.position)});
+        } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+            const vec3 centre = motion.position + motion.rotation * sphere->centre;
+            picture.balls.push_back({centre, sphere->radius, colour});
+        } else if (auto& [rest, now, mesh] = shapes_[c]; !rest.triangles.empty()) {
+            for (std::size_t i = 0; i < rest.positions.size(); ++i) {
+                now.positions[i] = motion.position + motion.rotation * rest.positions[i];
+                now.normals[i] = motion.rotation * rest.normals[i];
+            }
+            picture.surfaces.push_back({mesh, now.positions, now.normals, {colour, collider_shine}});
+        }
+    }
+}
+
+}  // namespace palpate

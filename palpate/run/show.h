@@ -1,0 +1,51 @@
+#pragma once
+#include "palpate/render/renderer.h"
+#include "palpate/run/film.h"
+#include "palpate/run/play.h"
+#include "palpate/run/run.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Draws a scene as it moves, into a film and single pictures.
+class Show {
+ public:
+    Show(const Scene& scene, const Models& made, const RunSettings& settings);
+
+    /// The OpenGL driver.
+    const std::string& renderer() const;
+
+    /// Frame 0 is the state before the first step. Returns whether it drew.
+    bool frame_done(int number, const Play& play);
+
+    /// After the last frame.
+    void finish();
+
+ private:
+    vec3 looked_at() const;
+    Picture picture(double time, const Play& play);
+    void add_tools(const Play& play, Picture& picture);
+    void add_colliders(const std::vector<Motion>& motions, Picture& picture);
+
+    const Scene& scene_;
+    const Models& made_;
+    const RunSettings& settings_;
+    Renderer renderer_;
+    Camera camera_;
+    std::vector<int> meshes_;  // of the bodies' surfaces
+    std::vector<std::vector<uvec2>> springs_;
+    struct Shape {
+        Mesh rest, now;  // of a collider: as it is given, and where it is
+        int mesh = 0;
+    };
+    std::vector<Shape> shapes_;      // one a collider
+    std::vector<vec3> drag_points_;  // where each drag pulls from and to
+    std::vector<uvec2> drag_lines_;  // between those
+    std::unique_ptr<Film> film_;
+    double next_image_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,321 @@
+// What acts on bodies while a scene runs, and when it ends.
+#include "palpate/run/play.h"
+
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/run/run.h"
+#include "tests/scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace palpate {
+namespace {
+
+Scene scene(const std::string& text) { return parse_scene(text, "test.toml", "."); }
+
+struct Ended {
+    Report report;
+    std::vector<std::vector<dvec3>> positions;  // of each body, at the end
+
+    dvec3 middle(std::size_t body) const {
+        dvec3 sum(0);
+        for (dvec3 p : positions[body]) sum += p;
+        return sum / double(positions[body].size());
+    }
+};
+
+Ended run_to_end(const Scene& scene, RunSettings settings = {}) {
+    Scratch scratch;
+    settings.nodes = scratch / "nodes.csv";
+    Ended ended{run(scene, settings), {}};
+    std::istringstream lines(read_text(settings.nodes));
+    std::string line, last;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+        std::istringstream words(line);
+        std::string name, word;
+        std::getline(words, name, ',');
+        std::getline(words, word, ',');
+        dvec3 p;
+        for (int k = 0; k < 3; ++k) {
+            std::getline(words, word, ',');
+            p[k] = std::stod(word);
+        }
+        if (name != last) ended.positions.emplace_back();
+        last = name;
+        ended.positions.back().push_back(p);
+    }
+    return ended;
+}
+
+std::string block(const std::string& name, const std::string& more = "") {
+    return "[[body]]\nname = \"" + name +
+           "\"\ndims = [3, 3, 3]\nspacing = 0.01\nyoungs_modulus = 5000\ndensity = 1000\n" + more;
+}
+
+const std::string weightless = "[simulation]\ngravity = [0, 0, 0]\nduration = 1\n";
+
+// ---- prescribed motion ----
+
+TEST(Play, MovedNodesEndWhereTheirPathSays) {
+    // A quarter turn about z through the origin, and a shift.
+    const Scene turned = scene(weightless + block("cube", "damping = 5\n") + R"(
+[[move]]
+nodes = { box = [[-1, -1, -1], [0.001, 1, 1]] }
+about = [0, 0, 0]
+path = [[0, 0, 0, 0, 0, 0, 0], [0.5, 0.1, 0, 0, 0, 0, 90]]
+)");
+    const Ended ended = run_to_end(turned);
+    EXPECT_FALSE(ended.report.diverged);
+    EXPECT_EQ(ended.report.bodies[0].pinned, 9u);
+    for (int z = 0; z < 3; ++z)
+        for (int y = 0; y < 3; ++y) {
+            const dvec3 there = ended.positions[0][std::size_t(3 * y + 9 * z)];
+            EXPECT_LT(glm::distance(there, dvec3(0.1 - 0.01 * y, 0, 0.01 * z)), 1e-7) << y << z;
+            // The rest has followed.
+            const dvec3 far = ended.positions[0][std::size_t(2 + 3 * y + 9 * z)];
+            EXPECT_LT(glm::distance(far, dvec3(0.1 - 0.01 * y, 0.02, 0.01 * z)), 1e-3) << y << z;
+        }
+}
+
+TEST(Play, AMoveBeginsAtItsFirstRowAndIsEvenBetween) {
+    const Scene late = scene(weightless + block("cube") + R"(
+[[move]]
+nodes = { nodes = [0, 26] }
+path = [[0.5, 0, 0, 0, 0, 0, 0], [1.5, 0, 0, 0, 180, 0, 0]]
+)");
+    RunSettings settings;
+    settings.frames = 20;
+    EXPECT_LT(glm::length(run_to_end(late, settings).positions[0][0]), 1e-9);
+    settings.frames = 60;  // half of the way: a quarter turn about x through the middle between them
+    const Ended half = run_to_end(late, settings);
+    EXPECT_LT(glm::distance(half.positions[0][0], dvec3(0, 0.02, 0)), 1e-7);
+    EXPECT_LT(glm::distance(half.positions[0][26], dvec3(0.02, 0, 0.02)), 1e-7);
+}
+
+// ---- colliders that move ----
+
+TEST(Play, AFrameOfMotionEndsAtThePose) {
+    const Pose from{{0.1f, 0.2f, 0.3f}, turn({10, 20, 30})}, to{{0.2f, 0, 0.1f}, turn({25, -20, 60})};
+    const vec3 pivot(1, 2, 3);
+    const double seconds = 1.0 / 60;
+    const Motion motion = motion_between(from, to, pivot, seconds), end = after(motion, float(seconds));
+    for (vec3 p : {vec3(0), vec3(0.1f, 0, 0), vec3(0, 0.3f, 0.2f)}) {
+        EXPECT_LT(
+            glm::distance(motion.position + motion.rotation * p, pivot + from.position + from.rotation * p),
+            1e-6f);
+        EXPECT_LT(glm::distance(end.position + end.rotation * p, pivot + to.position + to.rotation * p),
+                  1e-6f);
+    }
+    const Motion still = motion_between(to, to, pivot, seconds);
+    EXPECT_EQ(still.velocity, vec3(0));
+    EXPECT_LT(glm::length(still.spin), 1e-4f);
+}
+
+TEST(Play, ACollidersOwnPlaceTurnsAboutTheGivenPoint) {
+    const Scene round = scene(block("cube") + R"(
+[[collider]]
+sphere = { centre = [0.1, 0, 0], radius = 0.01 }
+about = [0, 0, 0]
+path = [[0, 0, 0, 0, 0, 0, 0], [1, 0, 0, 0.5, 0, 0, 90]]
+[[collider]]
+plane = { offset = -1 }
+)");
+    const Models made = build(round);
+    Report report;
+    const Play play(round, made, report);
+    const auto motions = play.colliders(1, 0.01);
+    const vec3 centre = std::get<Sphere>(made.simulation.colliders[0].shape).centre;
+    EXPECT_LT(glm::distance(motions[0].position + motions[0].rotation * centre, vec3(0, 0.1f, 0.5f)), 1e-6f);
+    EXPECT_EQ(motions[1].position, vec3(0));
+    EXPECT_EQ(motions[1].rotation, mat3(1));
+}
+
+TEST(Play, AMovingPlaneLiftsABody) {
+    const std::string text = R"(
+[simulation]
+duration = 1.5
+)" + block("cube", "damping = 10\n") +
+                             "[[collider]]\nplane = {}\n";
+    const double still = run_to_end(scene(text)).middle(0).y;
+    const Ended lifted = run_to_end(scene(text + "path = [[0.2, 0, 0, 0], [0.7, 0, 0.05, 0]]\n"));
+    EXPECT_NEAR(lifted.middle(0).y - still, 0.05, 1e-4);
+}
+
+TEST(Play, ATurningPlateCarriesABodyRound) {
+    const Scene plate =
+        scene("[simulation]\nduration = 1.2\n" + block("cube", "damping = 3\nmove = [0.05, 0, 0]\n") + R"(
+[[collider]]
+box = { centre = [0, -0.01, 0], half = [0.2, 0.01, 0.2] }
+friction = 1
+path = [[0.2, 0, 0, 0, 0, 0, 0], [1.0, 0, 0, 0, 0, 40, 0]]
+)");
+    // Turning about y takes x to -z.
+    const dvec3 middle = run_to_end(plate).middle(0);
+    EXPECT_NEAR(std::atan2(-middle.z, middle.x) * 180 / 3.14159265,
+                std::atan2(-0.01, 0.06) * 180 / 3.14159265 + 40, 4);
+}
+
+// ---- tools ----
+
+TEST(Play, ADragAtRestPullsWithStiffnessTimesDistance) {
+    const std::string text = weightless + "integrator = \"semi-implicit-euler\"\n" +
+                             block("cube", "damping = 20\npin = { below = 0 }\n");
+    const Ended ended = run_to_end(scene(text + R"(
+[[tool]]
+kind = "drag"
+near = [0.02, 0.02, 0.02]
+relative = true
+stiffness = 2
+path = [[0.1, 0, 0, 0], [0.3, 0, 0.02, 0], [2, 0, 0.02, 0]]
+)"));
+    const dvec3 held = ended.positions[0][26], target(0.02, 0.04, 0.02);
+    EXPECT_GT(held.y, 0.021);
+    EXPECT_LT(held.y, 0.039);
+    const Report::Tool& tool = ended.report.tools[0];
+    EXPECT_NEAR(tool.force.back() / (2 * glm::distance(held, target)), 1, 1e-3);
+    EXPECT_GE(tool.largest_force, tool.force.back());
+    EXPECT_EQ(tool.force.front(), 0);
+    EXPECT_EQ(tool.deepest_indentation, 0);
+}
+
+TEST(Play, ADragTakesTheNearestBodyUnlessToldOtherwise) {
+    const std::string text =
+        weightless + block("near", "damping = 5\n") + block("far", "damping = 5\nmove = [0.1, 0, 0]\n") +
+        "[[tool]]\nkind = \"drag\"\npath = [[0, 0, 0.03, 0], [2, 0, 0.03, 0]]\nstiffness = 1\n";
+    const Ended nearest = run_to_end(scene(text)), told = run_to_end(scene(text + "body = \"far\"\n"));
+    EXPECT_GT(nearest.middle(0).y, 0.012);
+    EXPECT_GT(told.middle(1).y, 0.012);
+    EXPECT_NEAR(nearest.middle(1).y, 0.01, 1e-6);
+    EXPECT_NEAR(told.middle(0).y, 0.01, 1e-6);
+    EXPECT_THROW(run_to_end(scene(weightless + block("cube", "pin = { below = 1 }\n") +
+                                  "[[tool]]\nkind = \"drag\"\npath = [[0, 0, 0, 0]]\n")),
+                 Error);
+}
+
+// ---- wind and regions ----
+
+TEST(Play, AHangingClothLeansInTheWind) {
+    // Flat, at the angle where the air's pressure balances the weight: half the density of the air
+    // x (v cos a)^2 = weight per area x sin a.
+    const Scene flag = scene(R"(
+[simulation]
+duration = 4
+[wind]
+velocity = [0, 0, 1.5]
+[[body]]
+cloth = [6, 11]
+spacing = 0.02
+springs = { structural = 100, shear = 50, flexion = 5 }
+density = 0.15
+damping = 4
+pin = { box = [[-1, 0.199, -1], [1, 0.201, 1]] }
+)");
+    const Ended ended = run_to_end(flag);
+    const double q = 0.5 * 1.2 * 1.5 * 1.5 / (0.15 * 9.81);
+    const double leaning = std::asin((std::sqrt(1 + 4 * q * q) - 1) / (2 * q));
+    const dvec3 hem = ended.positions[0][2] - ended.positions[0][62];
+    EXPECT_NEAR(std::atan2(hem.z, -hem.y), leaning, 0.05);
+}
+
+TEST(Play, AStifferRegionDeformsLess) {
+    auto hanging = [](const std::string& region) {
+        const Ended ended = run_to_end(
+            scene("[simulation]\nduration = 1.5\n" +
+                  block("cube", "damping = 20\npin = { box = [[-1, 0.019, -1], [1, 1, 1]] }\n") + region));
+        return -ended.positions[0][13 - 3].y;  // how far its lowest layer, at 0 when at rest, has come down
+    };
+    const std::string all = "[[body.region]]\nbox = [[-1, -1, -1], [1, 1, 1]]\n";
+    const double soft = hanging(""), hard = hanging(all + "factor = 4\n");
+    EXPECT_GT(soft, 1e-4);
+    EXPECT_NEAR(soft / hard, 4, 0.1);
+    EXPECT_EQ(hanging(all + "youngs_modulus = 20000\n"), hard);
+    const double half = hanging("[[body.region]]\nbox = [[-1, -1, -1], [1, 0.011, 1]]\nfactor = 4\n");
+    EXPECT_LT(half, 0.95 * soft);
+    EXPECT_GT(half, 1.05 * hard);
+}
+
+// ---- the end ----
+
+TEST(Play, WhenOneBodyDivergesAllGoBackToTheSameMoment) {
+    // The first falls freely; the second is twisted faster than its step can bear.
+    Scene two = scene("[simulation]\nstep = 0.004\nduration = 1\n" + block("falling") + block("wild") + R"(
+[[move]]
+body = "wild"
+nodes = { box = [[-1, -1, -1], [0.001, 1, 1]] }
+path = [[0.2, 0, 0, 0, 0, 0, 0], [0.3, 50, 0, 0, 0, 0, 0]]
+)");
+    two.simulation.force = true;
+    const Ended ended = run_to_end(two);
+    ASSERT_TRUE(ended.report.diverged);
+    ASSERT_GT(ended.report.frames, 5);
+    const double t = ended.report.simulated;
+    EXPECT_NEAR(ended.middle(0).y, 0.01 - 0.5 * 9.81 * t * t, 1e-5);
+    EXPECT_EQ(ended.report.bodies[0].steps, ended.report.bodies[1].steps);
+}
+
+TEST(Play, ARunEndsAtRest) {
+    const std::string text =
+        "[simulation]\nduration = 2\n" + block("cube", "damping = 10\npin = { below = 0 }\n");
+    RunSettings settings;
+    settings.until_rest = Rest::speed;
+    const Report damped = run(scene(text), settings);
+    ASSERT_TRUE(damped.rest.has_value());
+    EXPECT_EQ(*damped.rest, damped.simulated);
+    EXPECT_GT(*damped.rest, 0.6);
+    EXPECT_LT(*damped.rest, 5);
+    EXPECT_LT(damped.bodies[0].kinetic_energy, 1e-9);
+    EXPECT_TRUE(damped.notes.empty());
+
+    // What stands still from the start must do so for half a second.
+    const Report standing = run(scene(weightless + block("cube")), settings);
+    EXPECT_EQ(standing.frames, 30);
+    // What a path will yet push is not at rest.
+    const std::string path = "[[tool]]\npath = [[0.5, 1, 1, 1], [0.9, 1, 1, 1]]\n";
+    EXPECT_GE(run(scene(weightless + block("cube") + path), settings).rest.value(), 1.4 - 1e-6);
+
+    settings.until_rest = Rest::none;
+    EXPECT_EQ(run(scene(text), settings).frames, 120);
+}
+
+TEST(Play, WhatSwingsForeverIsStoppedWithANote) {
+    const Scene swinging = scene("[simulation]\nduration = 0.2\n" + block("cube", "pin = { below = 0 }\n"));
+    RunSettings settings;
+    settings.until_rest = Rest::speed;
+    const Report report = run(swinging, settings);
+    EXPECT_FALSE(report.rest);
+    EXPECT_EQ(report.frames, 120);
+    ASSERT_FALSE(report.notes.empty());
+    EXPECT_NE(report.notes.back().find("not at rest after 2 s"), std::string::npos) << report.notes.back();
+}
+
+TEST(Play, TheRuleOf2012LooksAtOneStep) {
+    // A step of 1/60 s under gravity moves what falls by 2.7 mm, then by more: never by less than 1 mm.
+    RunSettings settings;
+    settings.until_rest = Rest::move;
+    Scene falling = scene("[simulation]\nstep = 0.0166666667\nduration = 0.05\n" + block("cube"));
+    falling.bodies[0].material.youngs_modulus = 5;
+    EXPECT_FALSE(run(falling, settings).rest);
+    // Short steps are small moves from the first on.
+    falling.simulation.step = 0.001;
+    EXPECT_EQ(run(falling, settings).frames, 1);
+}
+
+TEST(Play, NothingIsASceneToo) {
+    RunSettings settings;
+    settings.frames = 3;
+    EXPECT_EQ(run(Scene{}, settings).frames, 3);
+    settings.until_rest = Rest::speed;
+    EXPECT_EQ(run(Scene{}, settings).frames, 3);
+    const Report rope = run(scene("[[body]]\nname = \"rope\"\ncloth = [1, 9]\nspacing = 0.01\nmass = 0.01\n"
+                                  "pin = { nodes = [0] }\n"),
+                            settings);
+    EXPECT_FALSE(rope.diverged);
+    EXPECT_EQ(rope.bodies[0].faces, 0u);
+}
+
+}  // namespace
+}  // namespace palpate

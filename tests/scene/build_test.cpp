@@ -1,0 +1,239 @@
+// What build() makes of recipes.
+#include "palpate/scene/build.h"
+
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/mesh/read.h"
+#include "palpate/mesh/write.h"
+#include "tests/scratch.h"
+#include "tests/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+
+namespace palpate {
+namespace {
+
+const std::string cube = R"(
+[[body]]
+name = "cube"
+dims = [6, 6, 6]
+spacing = 0.004
+youngs_modulus = 5000
+density = 1000
+)";
+
+Models make(const std::string& text, const std::filesystem::path& folder = ".") {
+    return build(parse_scene(text, "test.toml", folder));
+}
+
+bool has_note(const Models& made, const std::string& words) {
+    for (const std::string& note : made.notes)
+        if (note.find(words) != std::string::npos) return true;
+    return false;
+}
+
+TEST(Build, ABoxIsTurnedAndMovedWithItsSurface) {
+    const Model there = make(cube + "rotate = [0, 0, 90]\nmove = [1, 2, 3]\n").models[0];
+    const Model here = make(cube).models[0];
+    for (std::size_t i = 0; i < here.body.count(); ++i) {
+        const vec3 p = here.body.positions[i];
+        EXPECT_LT(glm::distance(there.body.positions[i], vec3(1 - p.y, 2 + p.x, 3 + p.z)), 1e-6f);
+    }
+    // The surface lies where its nodes take it, and its normals with it.
+    for (const Model& model : {here, there}) {
+        std::vector<vec3> positions, normals;
+        const std::vector<vec3> none(model.body.count(), vec3(0));
+        deform(model.embedding, {model.body.positions, none}, positions, normals);
+        ASSERT_EQ(positions.size(), model.surface.positions.size());
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            EXPECT_LT(glm::distance(positions[i], model.surface.positions[i]), 1e-6f);
+            EXPECT_LT(glm::distance(normals[i], model.surface.normals[i]), 1e-4f);
+        }
+    }
+}
+
+TEST(Build, SpringsOfThreeKindsMakeTheVolumeOf2012) {
+    const Body body = make(R"(
+[[body]]
+dims = [3, 3, 3]
+spacing = 0.01
+springs = { structural = 7, shear = 5, flexion = 3 }
+mass = 0.1
+link_damping = 0.002
+)")
+                          .models[0]
+                          .body;
+    EXPECT_EQ(body.stencil().links.size(), 32u);
+    EXPECT_EQ(body.link_damping, 0.002f);
+    EXPECT_NEAR(mass(body), 0.1, 1e-6);
+}
+
+TEST(Build, ClothOfOneRowIsANote) {
+    const Models made = make("[[body]]\nname = \"rope\"\ncloth = [1, 9]\nspacing = 0.01\nmass = 0.01\n");
+    EXPECT_TRUE(made.models[0].surface.triangles.empty());
+    EXPECT_TRUE(has_note(made, "rope: one node wide"));
+    const Models thread = make("[[body]]\ndims = [1, 1, 9]\nspacing = 0.01\nmass = 0.01\nstiffness = 10\n");
+    EXPECT_TRUE(has_note(thread, "one node thick"));
+}
+
+TEST(Build, ClothIsPlacedAndWeighed) {
+    const Model flag = make(R"(
+[[body]]
+cloth = [5, 4]
+spacing = 0.1
+rotate = [90, 0, 0]
+move = [0, 0, 1]
+springs = { structural = 100, shear = 50, flexion = 5 }
+density = 0.2
+)")
+                           .models[0];
+    EXPECT_NEAR(mass(flag.body), 0.2 * 0.4 * 0.3, 1e-6);
+    EXPECT_LT(glm::distance(flag.body.positions.back(), vec3(0.4f, 0, 1.3f)), 1e-6f);
+    EXPECT_EQ(flag.surface.triangles.size(), 2u * 4 * 3);
+    for (std::size_t i = 0; i < flag.body.count(); ++i) {
+        EXPECT_EQ(flag.surface.positions[i], flag.body.positions[i]);
+        EXPECT_LT(glm::distance(flag.surface.normals[i], vec3(0, -1, 0)), 1e-6f);
+    }
+}
+
+TEST(Build, ASheetIsItsOwnSurfaceAndMayBeOpen) {
+    Scratch scratch;
+    Mesh square;
+    square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
+    square.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}};
+    compute_normals(square);
+    write_mesh(square, scratch / "square.ply");
+    const std::string text = "[[body]]\nsurface = \"square.ply\"\nsheet = true\ndensity = 0.5\n";
+    const Models made = make(text, scratch / ".");
+    EXPECT_TRUE(made.notes.empty()) << made.notes[0];
+    const Model& sheet = made.models[0];
+    EXPECT_EQ(sheet.body.count(), 4u);  // the largest part
+    EXPECT_EQ(sheet.body.faces.size(), 2u);
+    EXPECT_NEAR(mass(sheet.body), 0.5, 1e-6);
+    EXPECT_EQ(make(text + "largest = false\n", scratch / ".").models[0].body.count(), 7u);
+}
+
+std::vector<int> strengthened(const Body& body, float factor) {
+    std::vector<int> nodes;
+    for (std::size_t i = 0; i < body.stencil().strength.size(); ++i)
+        if (std::abs(body.stencil().strength[i] / factor - 1) < 1e-5f) nodes.push_back(int(i));
+    return nodes;
+}
+
+TEST(Build, RegionsSayHowStiffTheyAreInThreeWays) {
+    const std::string where = "[[body.region]]\nbox = [[-1, -1, -1], [0.001, 1, 1]]\n";
+    const auto by_factor = strengthened(make(cube + where + "factor = 3\n").models[0].body, 3);
+    EXPECT_EQ(by_factor.size(), 36u);
+    EXPECT_EQ(strengthened(make(cube + where + "youngs_modulus = 15000\n").models[0].body, 3), by_factor);
+    EXPECT_EQ(strengthened(make(cube + where + "stiffness = 24\n").models[0].body, 3), by_factor);
+    // Of two, the last counts.
+    const Body both =
+        make(cube + where + "factor = 3\n[[body.region]]\nnodes = [0, 1]\nfactor = 5\n").models[0].body;
+    EXPECT_EQ(strengthened(both, 5), (std::vector<int>{0, 1}));
+    EXPECT_EQ(strengthened(both, 3).size(), 35u);
+    const Models none = make(cube + "[[body.region]]\nbox = [[8, 8, 8], [9, 9, 9]]\nfactor = 3\n");
+    EXPECT_TRUE(has_note(none, "cube, region 1: box holds no node"));
+    EXPECT_TRUE(strengthened(none.models[0].body, 3).empty());
+}
+
+// A NIfTI file of 3 x 3 x 3 voxels of 10 mm whose axes are the world's, the first of them at the origin.
+void write_labels(const std::filesystem::path& path, const std::vector<float>& values) {
+    std::string bytes(352, '\0');
+    auto set = [&](std::size_t at, auto value) { std::memcpy(&bytes[at], &value, sizeof value); };
+    set(0, std::int32_t(348));
+    for (std::size_t i = 0; i < 8; ++i) set(40 + 2 * i, std::int16_t(i == 0 || i > 3 ? (i == 0 ? 3 : 1) : 3));
+    set(70, std::int16_t(16));  // float
+    set(72, std::int16_t(32));
+    for (std::size_t i = 0; i < 4; ++i) set(76 + 4 * i, i == 0 ? 1.0f : 10.0f);
+    set(108, 352.0f);
+    bytes[123] = 2;             // millimetres
+    set(254, std::int16_t(1));  // the matrix below counts; NIfTI's x and y point the other way
+    for (std::size_t i = 0; i < 3; ++i) set(280 + 20 * i, i < 2 ? -10.0f : 10.0f);
+    bytes.replace(344, 3, "n+1");
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST(Build, LabelsTurnAndMoveWithTheBody) {
+    Scratch scratch;
+    std::vector<float> values(27, 0);
+    values[13] = 7;  // the voxel in the middle, from 5 to 15 mm
+    write_labels(scratch / "labels.nii", values);
+    const std::string region = "[[body.region]]\nlabels = \"labels.nii\"\nlabel = 7\nfactor = 2\n";
+    for (const char* placed : {"", "rotate = [0, 0, 90]\nmove = [1, 2, 3]\n"}) {
+        const Body body = make(cube + placed + region, scratch / ".").models[0].body;
+        const auto nodes = strengthened(body, 2);
+        EXPECT_EQ(nodes.size(), 8u);
+        for (int node : nodes)
+            for (int axis = 0; axis < 3; ++axis) {
+                const int at = body.stencil().at[std::size_t(node)][axis];
+                EXPECT_TRUE(at == 2 || at == 3) << at;
+            }
+    }
+    EXPECT_TRUE(has_note(
+        make(cube + "[[body.region]]\nlabels = \"labels.nii\"\nlabel = 9\nfactor = 2\n", scratch / "."),
+        "label holds no node"));
+    EXPECT_THROW(make(cube + "[[body.region]]\nlabels = \"none.nii\"\nlabel = 9\nfactor = 2\n"), Error);
+}
+
+TEST(Build, MovedNodesArePinnedAndTurnAboutTheirMiddle) {
+    const std::string move = "[[move]]\npath = [[0, 0, 0, 0]]\nnodes = ";
+    const Models made = make(cube + move + "{ box = [[-1, -1, -1], [0.001, 1, 1]], nodes = [0] }\n");
+    ASSERT_EQ(made.moves.size(), 1u);
+    EXPECT_EQ(made.moves[0].nodes.size(), 36u);  // node 0 once
+    EXPECT_LT(glm::distance(made.moves[0].about, vec3(0, 0.01f, 0.01f)), 1e-6f);
+    for (int node : made.moves[0].nodes) EXPECT_EQ(made.models[0].body.inverse_mass[std::size_t(node)], 0);
+    EXPECT_TRUE(has_note(make(cube + move + "{ box = [[8, 8, 8], [9, 9, 9]] }\n"), "move 1: nodes.box"));
+    EXPECT_THROW(make(cube + move + "{ nodes = [216] }\n"), Error);
+}
+
+TEST(Build, CollidersThatMoveAreGivenAboutTheirPivot) {
+    const std::string path = "path = [[0, 0, 0, 0]]\n";
+    const Models made = make(cube + "[[collider]]\nsphere = { centre = [1, 2, 3] }\n" +
+                             "[[collider]]\nsphere = { centre = [1, 2, 3] }\n" + path +
+                             "[[collider]]\nsphere = { centre = [1, 2, 3] }\nabout = [1, 1, 1]\n" + path +
+                             "[[collider]]\nplane = { offset = 2 }\n" + path);
+    const auto& all = made.simulation.colliders;
+    ASSERT_EQ(all.size(), 4u);
+    EXPECT_EQ(std::get<Sphere>(all[0].shape).centre, vec3(1, 2, 3));
+    EXPECT_EQ(made.pivots[0], vec3(0));
+    EXPECT_EQ(std::get<Sphere>(all[1].shape).centre, vec3(0));
+    EXPECT_EQ(made.pivots[1], vec3(1, 2, 3));
+    EXPECT_EQ(std::get<Sphere>(all[2].shape).centre, vec3(0, 1, 2));
+    EXPECT_EQ(std::get<Plane>(all[3].shape).offset, 0);
+    EXPECT_EQ(made.pivots[3], vec3(0, 2, 0));
+}
+
+TEST(Build, CollidersFromFiles) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(50), 20), scratch / "ball.ply");  // millimetres
+    const std::string file = "surface = \"ball.ply\", units = \"mm\", move = [1, 0, 0]";
+    const Models made = make(cube + "[[collider]]\nfield = { " + file + " }\n[[collider]]\npolygon = { " +
+                                 file + ", thickness = 0.003 }\n",
+                             scratch / ".");
+    const auto& field = std::get<DistanceField>(made.simulation.colliders[0].shape);
+    EXPECT_NEAR(field.at({1, 0.052f, 0}), 0.002f, 0.0005f);
+    EXPECT_NEAR(field.at({1.048f, 0, 0}), -0.002f, 0.0005f);
+    const auto& polygon = std::get<Polygon>(made.simulation.colliders[1].shape);
+    EXPECT_EQ(polygon.thickness, 0.003f);
+    EXPECT_EQ(polygon.triangles.size(), 20u * 2 * 20 * 2 - 80);
+    for (const auto& corners : polygon.triangles)
+        EXPECT_NEAR(glm::distance(corners[0], vec3(1, 0, 0)), 0.05f, 1e-5f);
+    EXPECT_THROW(make(cube + "[[collider]]\nfield = { surface = \"none.ply\" }\n"), Error);
+    EXPECT_THROW(make(cube + "[[collider]]\nfield = { spacing = 1e-6, " + file + " }\n", scratch / "."),
+                 Error);
+}
+
+TEST(Build, TheStrengthOfToolsIsKnownBeforehand) {
+    const std::string path = "path = [[0, 0, 0, 0]]\n";
+    const Models made = make(cube + "[[tool]]\nradius = 0.01\nstiffness = 300\n" + path +
+                             "[[tool]]\nkind = \"drag\"\nstiffness = 70\n" + path);
+    EXPECT_NEAR(made.simulation.contact, 300 / (3.14159265f * 1e-4f), 1);
+    EXPECT_EQ(made.simulation.pull, 70);
+}
+
+}  // namespace
+}  // namespace palpate
