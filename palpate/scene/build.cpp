@@ -110,7 +110,7 @@ void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::st
         return;
     }
     if (const std::string warning = size_warning(model.surface); !warning.empty()) note(warning);
-    if (recipe.dims || recipe.is_cloth()) return;
+    if (recipe.dims || recipe.cage || recipe.is_cloth()) return;
     if (recipe.spacing <= 0 && std::abs(double(body.count()) / recipe.nodes - 1) > 0.05)
         note(fmt::format("{} nodes instead of {}: the nearest that a spacing gives", body.count(),
                          recipe.nodes));
@@ -135,12 +135,23 @@ ClothSettings cloth_settings(const BodyRecipe& recipe) {
     return settings;
 }
 
+// A plain box around the middle of a surface, large enough for it unless its spacing is given.
+Body cage_around(const Mesh& surface, const BodyRecipe& recipe) {
+    const Bounds box = bounds(surface);
+    const vec3 cells(*recipe.cage - 1), fitting = box.size() / cells;
+    const float spacing = recipe.spacing > 0 ? recipe.spacing : std::max({fitting.x, fitting.y, fitting.z});
+    Body body = lattice(*recipe.cage, spacing, recipe.material);
+    for (vec3& p : body.positions) p += box.centre() - 0.5f * spacing * cells;
+    return body;
+}
+
 Body make_body(const BodyRecipe& recipe, const Mesh& surface, const Progress& progress) {
     if (recipe.cloth) return cloth(*recipe.cloth, recipe.spacing, cloth_settings(recipe));
     if (recipe.sheet) return cloth(surface, cloth_settings(recipe));
     if (recipe.dims && recipe.springs)
         return lattice(*recipe.dims, recipe.spacing, *recipe.springs, recipe.material);
     if (recipe.dims) return lattice(*recipe.dims, recipe.spacing, recipe.material);
+    if (recipe.cage) return cage_around(surface, recipe);
     return lattice(surface, {.nodes = recipe.nodes, .spacing = recipe.spacing, .material = recipe.material},
                    progress);
 }
@@ -153,8 +164,23 @@ void place(Model& model, const BodyRecipe& recipe) {
     for (vec3& n : model.surface.normals) n = turned * n;
 }
 
-Model build_one(const BodyRecipe& recipe, const Scene& scene, std::vector<std::string>& notes,
+// The same with the first of its files that is found.
+BodyRecipe with_surface(BodyRecipe recipe, const std::filesystem::path& folder,
+                        std::vector<std::string>& notes) {
+    const std::string wanted = recipe.surface;
+    for (const std::string& other : recipe.stand_ins) {
+        if (is_found(recipe.surface, folder)) break;
+        recipe.surface = other;
+    }
+    if (recipe.surface != wanted)
+        notes.push_back(fmt::format("body {}: {} is not found, so {} stands in for it", recipe.name, wanted,
+                                    recipe.surface));
+    return recipe;
+}
+
+Model build_one(const BodyRecipe& wanted, const Scene& scene, std::vector<std::string>& notes,
                 const Progress& progress) {
+    const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
     const bool grid = recipe.dims || recipe.cloth;
     Model model;
     if (!grid) model.surface = make_surface(recipe, scene.folder, progress).mesh;

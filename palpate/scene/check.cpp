@@ -87,6 +87,13 @@ void check(const BodyRecipe& body, const Source& source) {
     require(!body.sheet || !body.surface.empty(), "sheet without a surface", "name its file");
     require(!body.sheet || body.spacing == 0, "sheet beside spacing: its nodes are its vertices",
             "remove spacing, or change the sheet by faces");
+    if (body.cage) {
+        const ivec3 c = *body.cage;
+        require(!body.surface.empty() + !body.volume.empty() == 1 && !body.sheet,
+                "cage without a surface or a volume to go around", "name one, or use dims");
+        require(std::min({c.x, c.y, c.z}) >= 2 && double(c.x) * c.y * c.z <= 1e7,
+                "cage is not at least 2 along each axis and at most 10 million nodes", "change it");
+    }
     check_springs(body, require);
     require((m.density > 0) != (m.mass > 0), "wants density or mass, one of them above zero", "give it one");
     require(std::min({m.youngs_modulus, m.stiffness, m.density, m.mass, m.damping, m.link_damping,

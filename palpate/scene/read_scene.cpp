@@ -55,10 +55,24 @@ void read_fields(Reader& read, SpringKinds& springs) {
     read("flexion", springs.flexion);
 }
 
+// The name of a file, or several: the first that is found.
+void read_files(Reader& read, const char* key, std::string& first, std::vector<std::string>& others) {
+    const toml::node* node = read.get(key);
+    if (!node) return;
+    if (!node->is_array()) {
+        read.read(key, *node, first);
+        return;
+    }
+    read.read(key, *node, others);
+    if (others.empty()) read.wrong(key, *node, "a file, or a list of files");
+    first = others.front();
+    others.erase(others.begin());
+}
+
 void read_fields(Reader& read, BodyRecipe& body) {
     read("name", body.name);
     read("volume", body.volume);
-    read("surface", body.surface);
+    read_files(read, "surface", body.surface, body.stand_ins);
     read("dims", body.dims);
     read("cloth", body.cloth);
     read("sheet", body.sheet);
@@ -71,6 +85,7 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("faces", body.faces);
     read("nodes", body.nodes);
     read("spacing", body.spacing);
+    read("cage", body.cage);
     read("youngs_modulus", body.material.youngs_modulus);
     read("stiffness", body.material.stiffness);
     read.table("springs", [&](Reader& inside) { read_fields(inside, body.springs.emplace()); });

@@ -6,15 +6,28 @@
 
 namespace palpate {
 
-std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder) {
+namespace {
+
+std::optional<std::filesystem::path> find(const std::string& name, const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> places{folder};
     if (const char* data = std::getenv("PALPATE_DATA")) places.push_back(data);
     places.push_back("/usr/share/mricron/templates");
     for (const auto& place : places)
         if (std::error_code error; std::filesystem::is_regular_file(place / name, error)) return place / name;
+    return std::nullopt;
+}
+
+}  // namespace
+
+bool is_found(const std::string& name, const std::filesystem::path& folder) {
+    return find(name, folder).has_value();
+}
+
+std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder) {
+    if (const auto path = find(name, folder)) return *path;
     throw Error("cannot find the file", name,
                 "set PALPATE_DATA to the folder that holds it; the brain and the head come with Debian's "
-                "mricron-data");
+                "mricron-data, other meshes with scripts/get-data");
 }
 
 }  // namespace palpate

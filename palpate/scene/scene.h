@@ -45,8 +45,10 @@ struct Region {
 
 struct BodyRecipe {
     std::string name;
-    std::string volume;          // a file of voxels; or
-    std::string surface;         // a file of triangles; or
+    std::string volume;   // a file of voxels; or
+    std::string surface;  // a file of triangles; or
+    std::vector<std::string>
+        stand_ins;               // other files, the first of which that is found is taken where that is not
     std::optional<ivec3> dims;   // a plain box of so many nodes along each axis; or
     std::optional<ivec2> cloth;  // a rectangle of cloth
     bool sheet = false;          // the surface itself is cloth: a node a vertex, a spring an edge
@@ -59,6 +61,7 @@ struct BodyRecipe {
     int faces = 0;               // simplify the surface to about this many; 0 leaves it
     int nodes = 20'000;          // of the lattice; or
     float spacing = 0;           // m
+    std::optional<ivec3> cage;   // instead: a plain box of so many nodes around the surface
     Material material;           // its fields are keys of the body itself; of cloth, density is in kg/m²
     std::optional<SpringKinds> springs;  // of cloth, or of the volume of 2012 with dims
     Choice pin;                          // nodes to hold fast
@@ -163,5 +166,6 @@ const std::vector<ShippedScene>& shipped_scenes();
 /// Finds a file that a scene names: as it stands if absolute, else in the scene's folder, in the folder that
 /// the variable PALPATE_DATA names, or where Debian's mricron-data puts its templates. Throws Error.
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder);
+bool is_found(const std::string& name, const std::filesystem::path& folder);
 
 }  // namespace palpate
