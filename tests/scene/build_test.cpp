@@ -93,6 +93,12 @@ density = 0.2
     EXPECT_NEAR(mass(flag.body), 0.2 * 0.4 * 0.3, 1e-6);
     EXPECT_LT(glm::distance(flag.body.positions.back(), vec3(0.4f, 0, 1.3f)), 1e-6f);
     EXPECT_EQ(flag.surface.triangles.size(), 2u * 4 * 3);
+    std::vector<vec3> positions, normals;
+    const std::vector<vec3> up(flag.body.count(), vec3(0, -1, 0));
+    deform(flag.embedding, {flag.body.positions, up}, positions, normals);
+    ASSERT_EQ(positions.size(), flag.body.count());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        EXPECT_LT(glm::distance(positions[i], flag.surface.positions[i]), 1e-6f);
     for (std::size_t i = 0; i < flag.body.count(); ++i) {
         EXPECT_EQ(flag.surface.positions[i], flag.body.positions[i]);
         EXPECT_LT(glm::distance(flag.surface.normals[i], vec3(0, -1, 0)), 1e-6f);
