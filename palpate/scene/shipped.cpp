@@ -16,8 +16,23 @@ const std::vector<ShippedScene>& shipped_scenes() {
         scene("brain",
 #include "embedded/brain.toml.h"
               ),
+        scene("heart",
+#include "embedded/heart.toml.h"
+              ),
         scene("head",
 #include "embedded/head.toml.h"
+              ),
+        scene("drape",
+#include "embedded/drape.toml.h"
+              ),
+        scene("flag",
+#include "embedded/flag.toml.h"
+              ),
+        scene("dragon",
+#include "embedded/dragon.toml.h"
+              ),
+        scene("nodule",
+#include "embedded/nodule.toml.h"
               ),
         scene("box",
 #include "embedded/box.toml.h"
