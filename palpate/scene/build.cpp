@@ -135,23 +135,27 @@ ClothSettings cloth_settings(const BodyRecipe& recipe) {
     return settings;
 }
 
-// A plain box around the middle of a surface, large enough for it unless its spacing is given.
+// A plain box around the middle of a surface, or a sheet through it; large enough for it unless its spacing
+// is given.
 Body cage_around(const Mesh& surface, const BodyRecipe& recipe) {
+    const ivec3 dims = *recipe.cage;
     const Bounds box = bounds(surface);
-    const vec3 cells(*recipe.cage - 1), fitting = box.size() / cells;
-    const float spacing = recipe.spacing > 0 ? recipe.spacing : std::max({fitting.x, fitting.y, fitting.z});
-    Body body = lattice(*recipe.cage, spacing, recipe.material);
+    const vec3 cells(dims - 1), fitting = box.size() / glm::max(cells, vec3(1));
+    const float widest = std::max({fitting.x, fitting.y, dims.z > 1 ? fitting.z : 0});
+    const float spacing = recipe.spacing > 0 ? recipe.spacing : widest;
+    Body body = dims.z > 1 ? lattice(dims, spacing, recipe.material)
+                           : cloth({dims.x, dims.y}, spacing, cloth_settings(recipe));
     for (vec3& p : body.positions) p += box.centre() - 0.5f * spacing * cells;
     return body;
 }
 
 Body make_body(const BodyRecipe& recipe, const Mesh& surface, const Progress& progress) {
     if (recipe.cloth) return cloth(*recipe.cloth, recipe.spacing, cloth_settings(recipe));
+    if (recipe.cage) return cage_around(surface, recipe);
     if (recipe.sheet) return cloth(surface, cloth_settings(recipe));
     if (recipe.dims && recipe.springs)
         return lattice(*recipe.dims, recipe.spacing, *recipe.springs, recipe.material);
     if (recipe.dims) return lattice(*recipe.dims, recipe.spacing, recipe.material);
-    if (recipe.cage) return cage_around(surface, recipe);
     return lattice(surface, {.nodes = recipe.nodes, .spacing = recipe.spacing, .material = recipe.material},
                    progress);
 }
@@ -164,17 +168,17 @@ void place(Model& model, const BodyRecipe& recipe) {
     for (vec3& n : model.surface.normals) n = turned * n;
 }
 
-// The same with the first of its files that is found.
+// The same with the first of its files that is found; with the one it wants where none is.
 BodyRecipe with_surface(BodyRecipe recipe, const std::filesystem::path& folder,
                         std::vector<std::string>& notes) {
-    const std::string wanted = recipe.surface;
+    if (recipe.surface.empty() || is_found(recipe.surface, folder)) return recipe;
     for (const std::string& other : recipe.stand_ins) {
-        if (is_found(recipe.surface, folder)) break;
+        if (!is_found(other, folder)) continue;
+        notes.push_back(fmt::format("body {}: {} is not found, so {} stands in for it", recipe.name,
+                                    recipe.surface, other));
         recipe.surface = other;
+        break;
     }
-    if (recipe.surface != wanted)
-        notes.push_back(fmt::format("body {}: {} is not found, so {} stands in for it", recipe.name, wanted,
-                                    recipe.surface));
     return recipe;
 }
 
@@ -342,7 +346,8 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
         did("turned it right way out");
     }
     rotate(mesh, recipe.rotate);
-    for (vec3& p : mesh.positions) p += recipe.move;
+    const vec3 way = recipe.move - (recipe.centre ? bounds(mesh).centre() : vec3(0));
+    for (vec3& p : mesh.positions) p += way;
     compute_normals(mesh);
     const Soundness sound = soundness(mesh);
     did(fmt::format("{} vertices, {} faces, {} parts, {} open edges, {} bad edges", mesh.positions.size(),

@@ -52,7 +52,7 @@ void check_springs(const BodyRecipe& body, const Require& require) {
     if (body.springs || body.is_cloth()) {
         require(!uniform, "springs of several kinds beside youngs_modulus or stiffness",
                 "write springs = { structural = 100, shear = 50, flexion = 5 }");
-        require(body.is_cloth() || body.dims, "springs are for cloth and dims",
+        require(body.is_cloth() || body.dims, "springs are for cloth, sheets and dims",
                 "give youngs_modulus or stiffness");
         require(m.links == Links::automatic, "links means nothing here", "remove it");
     } else {
@@ -72,8 +72,8 @@ void check_grid(const BodyRecipe& body, const Require& require) {
     require(std::min({d.x, d.y, d.z}) >= 1 && double(d.x) * d.y * d.z <= 1e7,
             key + " is not at least 1 along each axis and at most 10 million nodes", "change it");
     require(body.spacing > 0, key + " without spacing", "say how far apart the nodes are, in m");
-    require(!body.iso && !body.units && !body.smooth && body.faces == 0,
-            key + " beside iso, units, smooth or faces, which mean nothing there", "remove them");
+    require(!body.iso && !body.units && !body.smooth && !body.centre && body.faces == 0,
+            key + " beside iso, units, smooth, centre or faces, which mean nothing there", "remove them");
 }
 
 void check(const BodyRecipe& body, const Source& source) {
@@ -84,6 +84,9 @@ void check(const BodyRecipe& body, const Source& source) {
     require(sources == 1, "wants exactly one of volume, surface, dims and cloth", "give it one");
     require(body.volume.empty() || body.iso, "a volume without iso", "say at which value its surface lies");
     require(body.volume.empty() == !body.iso, "iso without a volume", "remove it");
+    require(!body.centre || std::all_of(body.regions.begin(), body.regions.end(),
+                                        [](const Region& region) { return region.labels.empty(); }),
+            "centre beside labels, which would stay where they are", "use move");
     require(!body.sheet || !body.surface.empty(), "sheet without a surface", "name its file");
     require(!body.sheet || body.spacing == 0, "sheet beside spacing: its nodes are its vertices",
             "remove spacing, or change the sheet by faces");
@@ -91,8 +94,9 @@ void check(const BodyRecipe& body, const Source& source) {
         const ivec3 c = *body.cage;
         require(!body.surface.empty() + !body.volume.empty() == 1 && !body.sheet,
                 "cage without a surface or a volume to go around", "name one, or use dims");
-        require(std::min({c.x, c.y, c.z}) >= 2 && double(c.x) * c.y * c.z <= 1e7,
-                "cage is not at least 2 along each axis and at most 10 million nodes", "change it");
+        require(std::min(c.x, c.y) >= 2 && c.z >= 1 && double(c.x) * c.y * c.z <= 1e7,
+                "cage is not at least 2 along each axis (a last 1 is a sheet) and at most 10 million nodes",
+                "change it");
     }
     check_springs(body, require);
     require((m.density > 0) != (m.mass > 0), "wants density or mass, one of them above zero", "give it one");

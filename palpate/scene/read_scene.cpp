@@ -79,6 +79,7 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("iso", body.iso);
     read("units", body.units);
     read("rotate", body.rotate);
+    read("centre", body.centre);
     read("move", body.move);
     read("largest", body.largest);
     read("smooth", body.smooth);

@@ -55,14 +55,16 @@ struct BodyRecipe {
     std::optional<float> iso;    // the value at the surface of a volume; half-integer for integer volumes
     std::optional<Units> units;  // of the file; volumes default to millimetres, surfaces to metres
     vec3 rotate = vec3(0);       // degrees about x, then y, then z
-    vec3 move = vec3(0);         // m, after turning
+    bool centre = false;         // after turning, bring the middle of its box to the origin
+    vec3 move = vec3(0);         // m, after that
     bool largest = true;         // keep only the largest connected part
     std::optional<int> smooth;   // passes of smoothing; 10 for a volume, 0 for a surface
     int faces = 0;               // simplify the surface to about this many; 0 leaves it
     int nodes = 20'000;          // of the lattice; or
     float spacing = 0;           // m
-    std::optional<ivec3> cage;   // instead: a plain box of so many nodes around the surface
-    Material material;           // its fields are keys of the body itself; of cloth, density is in kg/m²
+    std::optional<ivec3>
+        cage;           // instead: a plain box of so many nodes around the surface; a last 1 is a sheet
+    Material material;  // its fields are keys of the body itself; of cloth, density is in kg/m²
     std::optional<SpringKinds> springs;  // of cloth, or of the volume of 2012 with dims
     Choice pin;                          // nodes to hold fast
     std::vector<Region> regions;
@@ -71,7 +73,7 @@ struct BodyRecipe {
     float shine = 0.4f;                       // 0 dull, 1 wet
     int line = 0;
 
-    bool is_cloth() const { return cloth || sheet; }
+    bool is_cloth() const { return cloth || sheet || (cage && cage->z == 1); }
 };
 
 /// A collider. Where its shape lies in a file, build() fills it in: a Polygon's triangles, or a DistanceField

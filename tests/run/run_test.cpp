@@ -291,5 +291,28 @@ TEST(Plot, SurvivesOddCurves) {
     EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
 }
 
+// All that a shipped scene does in its first third of a second, with its surface written, goes well.
+TEST(Run, EveryShippedSceneStarts) {
+    Scratch scratch;
+    for (const ShippedScene& shipped : shipped_scenes()) {
+        const Scene scene = read_scene(shipped.name);
+        const BodyRecipe& body = scene.bodies[0];
+        const std::string& file = body.volume.empty() ? body.surface : body.volume;
+        if (!file.empty() && !is_found(file, scene.folder) &&
+            !(body.stand_ins.size() == 1 && is_found(body.stand_ins[0], scene.folder))) {
+            std::printf("%s: %s is not available\n", shipped.name.c_str(), file.c_str());
+            continue;
+        }
+        RunSettings settings;
+        settings.frames = 20;
+        settings.surface = scratch / "end.ply";
+        const Report report = run(scene, settings);
+        EXPECT_FALSE(report.diverged) << shipped.name;
+        EXPECT_EQ(report.bodies[0].inverted_cells, 0u) << shipped.name;
+        EXPECT_EQ(read_mesh(settings.surface, Units::metres).triangles.size(), report.bodies[0].faces)
+            << shipped.name;
+    }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -420,34 +420,55 @@ TEST(Path, TurnsEvenlyInDegrees) {
 }
 
 class Shipped : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Every, Shipped, ::testing::Values("brain", "head", "box"),
+class Tissue : public Shipped {};
+std::vector<std::string> shipped_names() {
+    std::vector<std::string> names;
+    for (const ShippedScene& scene : shipped_scenes()) names.push_back(scene.name);
+    return names;
+}
+INSTANTIATE_TEST_SUITE_P(Every, Shipped, ::testing::ValuesIn(shipped_names()),
                          [](const auto& each) { return each.param; });
+INSTANTIATE_TEST_SUITE_P(Shipped, Tissue, ::testing::Values("brain", "head", "box"),
+                         [](const auto& each) { return each.param; });
+
+// The first file that a scene wants and this machine lacks, or nothing.
+std::string missing_file(const Scene& scene) {
+    for (const BodyRecipe& body : scene.bodies) {
+        std::vector<std::string> files = body.stand_ins;
+        files.insert(files.begin(), body.volume.empty() ? body.surface : body.volume);
+        const bool found = std::any_of(files.begin(), files.end(), [&](const std::string& file) {
+            return file.empty() || is_found(file, scene.folder);
+        });
+        if (!found) return files[0];
+    }
+    return "";
+}
 
 TEST_P(Shipped, BuildsAsItSays) {
     const Scene scene = read_scene(GetParam());
-    if (!scene.bodies[0].volume.empty() &&
-        !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
-        GTEST_SKIP() << "mricron-data is not available";
+    if (const std::string file = missing_file(scene); !file.empty())
+        GTEST_SKIP() << file << " is not available";
     const Models made = build(scene);
+    std::size_t held = 0;
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const BodyRecipe& recipe = scene.bodies[m];
         const auto& [body, surface, embedding] = made.models[m];
-        if (!recipe.dims) EXPECT_LE(std::abs(double(body.count()) / recipe.nodes - 1), 0.05);
+        if (!recipe.dims && !recipe.cloth && !recipe.cage)
+            EXPECT_LE(std::abs(double(body.count()) / recipe.nodes - 1), 0.05);
         EXPECT_GT(surface.triangles.size(), 0u);
-        std::size_t pinned = 0;
-        for (float inverse : body.inverse_mass) pinned += inverse == 0;
-        EXPECT_GT(pinned, 0u);
-        EXPECT_LT(pinned, body.count() / 2);
+        for (float inverse : body.inverse_mass) held += inverse == 0;
+        if (!recipe.cage) EXPECT_LT(held, body.count() / 2);
     }
-    EXPECT_TRUE(made.notes.empty()) << made.notes[0];
+    EXPECT_GT(held, 0u);
+    // The heart's vessels end openly, and the dragon may stand in for itself; notes say so.
+    if (scene.bodies[0].stand_ins.empty()) EXPECT_TRUE(made.notes.empty()) << made.notes[0];
 }
 
 // 10,000 steps of the automatic length: nothing blows up, and what is damped comes to rest.
-TEST_P(Shipped, IsStableAtTheAutomaticStep) {
+TEST_P(Tissue, IsStableAtTheAutomaticStep) {
     const Scene scene = read_scene(GetParam());
-    if (!scene.bodies[0].volume.empty() &&
-        !std::filesystem::exists("/usr/share/mricron/templates/ch2.nii.gz"))
-        GTEST_SKIP() << "mricron-data is not available";
+    if (const std::string file = missing_file(scene); !file.empty())
+        GTEST_SKIP() << file << " is not available";
     const Models made = build(scene);
     for (const Model& model : made.models)
         for (Integrator integrator : {Integrator::verlet, Integrator::semi_implicit_euler}) {
