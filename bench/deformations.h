@@ -226,8 +226,30 @@ inline Carrier beast_on_18_nodes() {
             bend({0, 0, 1}, {1, 0, 0}, 0.32)};
 }
 
+/// Much surface on a sheet of 6 × 3 nodes through its middle, as scenes/dragon.toml has it.
+inline Carrier on_a_sheet_of_18(const std::string& name, const Mesh& surface) {
+    const Bounds box = bounds(surface);
+    const float spacing = 0.206f * box.size().x;
+    Mesh mesh = surface;
+    for (vec3& p : mesh.positions) p -= box.centre();
+    compute_normals(mesh);
+    Body body = cloth({6, 3}, spacing, {.density = 1});
+    for (vec3& p : body.positions) p -= 0.5f * spacing * vec3(5, 2, 0);
+    const double length = 5 * double(spacing);
+    return {name + " on a sheet of 18 nodes", mesh, body, of_a_sheet(twist({1, 0, 0}, length)),
+            bend({1, 0, 0}, {0, 0, -1}, length)};
+}
+
+inline Mesh beast() {
+    Mesh mesh = ellipsoid({0.1f, 0.07f, 0.045f}, 60);
+    for (vec3& p : mesh.positions)
+        p *= 1 + 0.08f * std::sin(60 * p.x) * std::sin(45 * p.y) * std::sin(50 * p.z);
+    return mesh;
+}
+
 inline std::vector<Carrier> carriers() {
-    return {organ_on_a_lattice(), quilt_on_a_cloth(), quilt_on_a_triangle_cloth(), beast_on_18_nodes()};
+    return {organ_on_a_lattice(), quilt_on_a_cloth(), quilt_on_a_triangle_cloth(), beast_on_18_nodes(),
+            on_a_sheet_of_18("beast", beast())};
 }
 
 }  // namespace palpate

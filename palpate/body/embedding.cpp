@@ -21,7 +21,98 @@ void check(const Body& body, Mapping mapping) {
                     "faces");
 }
 
-Mapping best_for(const Body& body) { return body.cells.empty() ? Mapping::frames : Mapping::trilinear; }
+// A box's longest side turned by 90° from end to end, or bent by as much towards its shortest.
+class Trial {
+ public:
+    explicit Trial(const Bounds& box) : middle_(box.centre()) {
+        const vec3 size = box.size();
+        for (int k = 0; k < 3; ++k) {
+            if (size[k] > size[along_]) along_ = k;
+            if (size[k] <= size[across_]) across_ = k;
+        }
+        if (across_ == along_) across_ = (along_ + 1) % 3;
+        rate_ = glm::radians(90.0f) / std::max(size[along_], 1e-20f);
+    }
+    vec3 twisted(vec3 p) const {
+        p -= middle_;
+        const int y = (along_ + 1) % 3, z = (along_ + 2) % 3;
+        const float c = std::cos(rate_ * p[along_]), s = std::sin(rate_ * p[along_]);
+        const float turned = c * p[y] - s * p[z];
+        p[z] = s * p[y] + c * p[z];
+        p[y] = turned;
+        return middle_ + p;
+    }
+    vec3 bent(vec3 p) const {
+        p -= middle_;
+        const float angle = rate_ * p[along_], radius = 1 / rate_ - p[across_];
+        p[along_] = radius * std::sin(angle);
+        p[across_] = 1 / rate_ - radius * std::cos(angle);
+        return middle_ + p;
+    }
+
+ private:
+    vec3 middle_;
+    int along_ = 0, across_ = 2;
+    float rate_;  // 1/m
+};
+
+// Where a motion of all space takes a surface that hovers over a sheet: it counts where the sheet goes, and
+// each vertex stays as high, straight over the same place. The rest no sheet can know.
+template <class Motion>
+std::vector<vec3> carried_by(Motion motion, const Mesh& surface, const Body& body) {
+    std::vector<vec3> moved;
+    const Outside outside(body);
+    for (std::size_t i = 0; i < surface.positions.size(); ++i) {
+        const vec3 v = surface.positions[i];
+        const Facet& facet = outside.nearest(v, surface.normals[i]);
+        const vec3 n = facet.normal;
+        const float height = glm::dot(v - body.positions[facet.nodes[0]], n), step = 0.05f * body.spacing;
+        const vec3 foot = v - height * n;
+        const vec3 x = glm::normalize(any_across(n)), y = glm::cross(n, x);
+        auto slope = [&](vec3 along) { return motion(foot + step * along) - motion(foot - step * along); };
+        moved.push_back(motion(foot) + height * direction(glm::cross(slope(x), slope(y)), n));
+    }
+    return moved;
+}
+
+// How far a surface is from there when the motion takes the nodes, squared and summed.
+template <class Motion>
+double misfit(const Mesh& surface, const Body& body, const Embedding& skin, Motion motion) {
+    std::vector<vec3> nodes, positions, normals;
+    for (vec3 p : body.positions) nodes.push_back(motion(p));
+    const std::vector<vec3> approximate = approximate_normals(body, nodes);
+    deform(skin, {nodes, approximate}, positions, normals);
+    const std::vector<vec3> exact = carried_by(motion, surface, body);
+    double sum = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const dvec3 way = dvec3(positions[i]) - dvec3(exact[i]);
+        sum += glm::dot(way, way);
+    }
+    return sum;
+}
+
+// On sheets no mapping is always the best: frames on fine ones, the interpolated basis where few nodes carry
+// much surface. So each is tried on a twist and a bend of this surface. Frames must do better than the
+// paper's in both; else the paper's that does better in all is taken.
+Embedding embed_by_trial(const Mesh& surface, const Body& body) {
+    const Trial trial(bounds(surface));
+    struct Tried {
+        Embedding skin;
+        double twist, bend;
+    };
+    auto attempt = [&](Mapping mapping) {
+        Tried tried{embed(surface, body, mapping), 0, 0};
+        tried.twist = misfit(surface, body, tried.skin, [&](vec3 p) { return trial.twisted(p); });
+        tried.bend = misfit(surface, body, tried.skin, [&](vec3 p) { return trial.bent(p); });
+        return tried;
+    };
+    Tried frames = attempt(Mapping::frames), turned = attempt(Mapping::interpolated),
+          flat = attempt(Mapping::constant);
+    if (frames.twist <= std::min(turned.twist, flat.twist) && frames.bend <= std::min(turned.bend, flat.bend))
+        return std::move(frames.skin);
+    return turned.twist + turned.bend <= flat.twist + flat.bend ? std::move(turned.skin)
+                                                                : std::move(flat.skin);
+}
 
 }  // namespace
 
@@ -33,7 +124,9 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping) {
         compute_normals(with_normals);
         return embed(with_normals, body, mapping);
     }
-    if (mapping == Mapping::automatic) mapping = best_for(body);
+    if (mapping == Mapping::automatic && body.fan > 0) return embed_by_trial(surface, body);
+    // Round a solid, bases of triangles open seams where neighbours hang on different sides; frames do not.
+    if (mapping == Mapping::automatic) mapping = body.cells.empty() ? Mapping::frames : Mapping::trilinear;
     const bool has_tangents = surface.tangents.size() == surface.positions.size();
     const std::vector<vec4> tangents = has_tangents ? surface.tangents : std::vector<vec4>();
     if (mapping == Mapping::trilinear) return {embed_in_cells(surface, body), tangents};

@@ -13,7 +13,7 @@ namespace palpate {
 /// How a fine surface follows the nodes. All but `trilinear` hang it on the outside of the body: the hull of
 /// its cells, or its faces.
 enum class Mapping {
-    automatic,      // what measures best (docs/architecture.md): trilinear where there are cells, else frames
+    automatic,      // trilinear where there are cells; on a sheet what does best on trial; else frames
     one_to_one,     // on the nearest node, as it is, with its approximate normal (2005, section 3.2)
     constant,       // on a triangle of nodes, in the triangle's own basis (eq. 4 to 7)
     interpolated,   // the same, with the basis turned to the nodes' approximate normals (eq. 8)

@@ -78,6 +78,8 @@ TEST(Embedding, TheRestSurfaceMapsToItself) {
     for (const Carrier& c : all)
         for (Mapping mode : modes_of(c.body)) {
             if (mode == Mapping::one_to_one) continue;  // see the next test
+            // What reaches past the rim of a sheet lies aside of all its normals (section 3.5 gives that up).
+            if (mode == Mapping::normal_offset && c.body.fan > 0 && c.body.count() == 18) continue;
             const Moved moved = follow(embed(c.surface, c.body, mode), c.body, c.body.positions);
             EXPECT_LE(farthest(moved.normals, c.surface.normals), 1e-5) << c.name << ' ' << name_of(mode);
             if (mode == Mapping::normal_offset && !c.body.cells.empty()) {
@@ -246,9 +248,21 @@ TEST(Embedding, AutomaticIsNeverWorseThanTheBestOfThePaper) {
     for (const Carrier& c : carriers()) {
         const Embedding skin = embed(c.surface, c.body, Mapping::automatic);
         EXPECT_LE(misfit(c, skin, c.twisted).rms, best_of_the_paper(c, c.twisted)) << c.name;
-        // 90° over three nodes a tenth of a metre apart is past what frames can tell; docs/architecture.md.
-        if (c.body.count() > 18)
+        // 90° over two springs of a solid is past what frames can tell, and what is closer there opens seams.
+        if (c.name != beast_on_18_nodes().name)
             EXPECT_LE(misfit(c, skin, c.bent).rms, best_of_the_paper(c, c.bent)) << c.name;
+    }
+}
+
+// What the 2005 paper shows on its dragon: where few nodes carry much surface, the interpolated basis is
+// better.
+TEST(Embedding, OnASheetOf18NodesInterpolatedBeatsConstant) {
+    const Carrier c = on_a_sheet_of_18("beast", beast());
+    for (const Deformation* d : {&c.twisted, &c.bent}) {
+        const Misfit flat = misfit(c, embed(c.surface, c.body, Mapping::constant), *d);
+        const Misfit turned = misfit(c, embed(c.surface, c.body, Mapping::interpolated), *d);
+        EXPECT_LE(turned.rms, 0.6 * flat.rms) << d->name;
+        EXPECT_LE(turned.mean_angle, 0.7 * flat.mean_angle) << d->name;
     }
 }
 
