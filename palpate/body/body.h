@@ -50,7 +50,9 @@ struct Table {
     std::vector<Tie> ties;  // count × width
 
     std::span<const Tie> of(std::size_t) const&& = delete;  // it would outlive its table
-    std::span<const Tie> of(std::size_t node) const& { return {&ties[node * width], std::size_t(width)}; }
+    std::span<const Tie> of(std::size_t node) const& {
+        return {ties.data() + node * std::size_t(width), std::size_t(width)};
+    }
 };
 
 /// Nodes and the springs between them. Plain data; the moving state belongs to a Solver.

@@ -168,6 +168,10 @@ Body cloth(const Mesh& mesh, const ClothSettings& settings) {
         if (other == opposite.end() || settings.stiffness.flexion <= 0) continue;
         ties[mine].push_back(tie(mine, int(other->second), settings.stiffness.flexion));
     }
+    for (std::size_t v = 0; v < body.area.size(); ++v)
+        if (!(body.area[v] > 0))
+            throw Error(fmt::format("the faces at vertex {} have no area, so it has no mass", v), "the cloth",
+                        "drop collapsed faces");
     body.springs = pack(ties);
     body.spacing = mean_rest(std::get<Table>(body.springs));
     weigh(body, settings);

@@ -5,10 +5,16 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
+#include <cassert>
+
 namespace palpate {
 
 float DistanceField::at(vec3 p) const {
-    const vec3 place = glm::clamp((p - origin) / spacing, vec3(0), vec3(dims - 1));
+    assert(dims.x > 1 && dims.y > 1 && dims.z > 1);
+    const vec3 way = (p - origin) / spacing;
+    vec3 place;  // a motion that blows up brings points that are no numbers: they count as the first corner
+    for (int k = 0; k < 3; ++k) place[k] = way[k] > 0 ? std::min(way[k], float(dims[k] - 1)) : 0;
     const ivec3 cell = glm::min(ivec3(place), dims - 2);
     const vec3 part = place - vec3(cell);
     float sum = 0;

@@ -20,7 +20,7 @@ inline std::span<const Named<Links>> names(Links) {
     return all;
 }
 
-/// How strong the three kinds of springs of 2012, section 3, are, N/m. A zero leaves them out.
+/// How strong the three kinds of springs of 2012, section 3, are, N/m. A zero: they resist nothing.
 struct SpringKinds {
     float structural = 0;  // to the next node along an axis: resists stretching
     float shear = 0;       // to the next node across a diagonal: resists shearing

@@ -1,5 +1,6 @@
 #include "palpate/body/select.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -55,19 +56,17 @@ std::vector<int> nodes_labelled(const Body& body, const Volume& labels, float la
     });
 }
 
-void strengthen(Body& body, std::span<const int> nodes, float factor) {
+void strengthen(Body& body, std::span<const float> factors) {
+    assert(factors.size() == body.count());
     if (auto* stencil = std::get_if<Stencil>(&body.springs)) {
         stencil->strength.resize(body.count(), 1);
-        for (int node : nodes) stencil->strength[node] *= factor;
+        for (std::size_t i = 0; i < factors.size(); ++i) stencil->strength[i] *= factors[i];
         return;
     }
     Table& springs = std::get<Table>(body.springs);
-    std::vector<float> factors(body.count(), 1);
-    for (int node : nodes) factors[node] = factor;
-    for (std::size_t i = 0; i < body.count(); ++i)
-        for (int t = 0; t < springs.width; ++t)
-            if (Tie& tie = springs.ties[i * springs.width + t]; tie.to >= 0)
-                tie.stiffness *= 0.5f * (factors[i] + factors[tie.to]);
+    for (std::size_t t = 0; t < springs.ties.size(); ++t)
+        if (Tie& tie = springs.ties[t]; tie.to >= 0)
+            tie.stiffness *= 0.5f * (factors[t / std::size_t(springs.width)] + factors[std::size_t(tie.to)]);
 }
 
 void pin(Body& body, std::span<const int> nodes) {

@@ -21,9 +21,9 @@ std::vector<int> nodes_in(const Body& body, const Bounds& box);
 /// The nodes that lie in voxels of this value: a label volume says what is what. Outside it there are none.
 std::vector<int> nodes_labelled(const Body& body, const Volume& labels, float label);
 
-/// Makes the springs of these nodes `factor` times as stiff as they are; one that leads out of them gets half
-/// of the change. A node must not be named twice.
-void strengthen(Body& body, std::span<const int> nodes, float factor);
+/// Makes the springs of each node so many times as stiff as they are: one factor a node, and a spring takes
+/// the mean of its ends'.
+void strengthen(Body& body, std::span<const float> factors);
 
 /// No force moves these nodes any more: their inverse mass becomes 0.
 void pin(Body& body, std::span<const int> nodes);

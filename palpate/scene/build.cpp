@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <map>
 
 namespace palpate {
 namespace {
@@ -90,10 +89,7 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
         }
         for (int node : nodes) factors[std::size_t(node)] = factor_of(region, body);
     }
-    std::map<float, std::vector<int>> alike;
-    for (std::size_t i = 0; i < factors.size(); ++i)
-        if (factors[i] != 1) alike[factors[i]].push_back(int(i));
-    for (const auto& [factor, nodes] : alike) strengthen(body, nodes, factor);
+    if (!recipe.regions.empty()) strengthen(body, factors);
 }
 
 // ---- bodies ----

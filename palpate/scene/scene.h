@@ -34,8 +34,9 @@ struct Choice {
 /// A part of a body that is harder or softer than the rest: nodes of a choice, or those that a label volume
 /// gives this label, and one of the last three. Where regions overlap, the last counts.
 struct Region {
-    Choice choice;               // its fields are keys of the region itself
-    std::string labels;          // a file of voxels, in the body's units, turned and moved as the body is
+    Choice choice;  // its fields are keys of the region itself
+    std::string
+        labels;  // a file of voxels (mm unless the body says otherwise), turned and moved as the body is
     std::optional<float> label;  // the value of those that belong to the region
     float youngs_modulus = 0;    // Pa
     float stiffness = 0;         // N/m of each spring

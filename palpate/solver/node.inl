@@ -94,7 +94,8 @@ FN Real3 drag_force(Real3 position, int i) {
 // The air presses with half its density x the square of its speed through the surface: on both sides of a sheet, on
 // a solid from the windward side. Along the surface it slides past.
 FN Real3 wind_force(Node node) {
-    Real3 normal = unit(springs(node.position).outward);
+    Real3 outward = springs(node.position).outward;
+    Real3 normal = min(inversesqrt(squared(outward)), Real(1.0f)) * outward;  // a short one says little
     Real through = dot(xyz(pass.wind) - node.velocity, normal);
     if (pass.fan == 0) through = min(through, Real(0.0f));
     return (Real(0.5f * pass.wind.w) * area() * max(through, -through) * through) * normal;

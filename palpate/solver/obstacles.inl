@@ -39,9 +39,11 @@ FN Contact at_triangle(Real3 was, Real3 p, Real3 a, Real3 b, Real3 c) {
     Real part = select(height * side < Real(0.0f), before * (Real(1.0f) / (before - height)), Real(1.0f));
     Real3 at = was + part * (p - was);
     Real within = min(dot(cross(b - a, at - a), normal), min(dot(cross(c - b, at - b), normal), dot(cross(a - c, at - c), normal)));
+    // Triangles overlap by a hair, so that rounding leaves no seam between them.
+    Real hair = Real(-1e-4f) * dot(cross(b - a, c - a), normal);
     Contact contact;
     contact.normal = side * normal;
-    contact.depth = select(within < Real(0.0f), Real(-1.0f), -side * height);
+    contact.depth = select(within < hair, Real(-1.0f), -side * height);
     return contact;
 }
 

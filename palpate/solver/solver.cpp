@@ -52,11 +52,16 @@ void check_colliders(const Simulation& simulation) {
 }  // namespace
 
 int steps_within(double seconds, double longest) {
-    return std::max(1, int(std::ceil(seconds / longest - 1e-6)));  // a hair of rounding is not worth a step
+    const double steps = std::ceil(seconds / longest - 1e-6);  // a hair of rounding is not worth a step
+    return int(std::clamp(steps, 1.0, 1e9));
 }
 
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation) {
     const double frequency = highest_frequency(body);
+    if (!std::isfinite(frequency))
+        throw Error("masses or springs that are not finite",
+                    body.name.empty() ? "the body" : "body " + body.name,
+                    "give all nodes a mass above zero, and all springs finite stiffness");
     check_step(body, simulation, frequency);
     check_colliders(simulation);
     switch (simulation.backend) {

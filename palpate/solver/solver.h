@@ -39,7 +39,8 @@ class Solver {
     virtual Nodes nodes() const = 0;
 
     /// Positions and velocities at the same moment, whatever the integrator's own bookkeeping; as if tips,
-    /// drags and wind were gone just then.
+    /// drags, wind and colliders were gone just then: with Verlet a node at rest on the ground shows half a
+    /// step of gravity.
     virtual State state() const = 0;
 
     /// The state as the integrator keeps it, to the bit: going on from it after restore() is going on from

@@ -5,6 +5,7 @@
 #include "palpate/solver/stability.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -99,6 +100,7 @@ class Reference final : public Solver {
     }
 
     Stats step(double seconds, const Influences& influences) override {
+        assert(seconds > 0 && names_nodes(influences));
         Stats stats;
         stats.reactions.assign(influences.presses.size(), dvec3(0));
         stats.pulls.assign(influences.drags.size(), dvec3(0));
@@ -113,6 +115,8 @@ class Reference final : public Solver {
         if (torn()) {
             restore(before);
             stats.diverged = true;
+            std::fill(stats.reactions.begin(), stats.reactions.end(), dvec3(0));
+            std::fill(stats.pulls.begin(), stats.pulls.end(), dvec3(0));
             return stats;
         }
         arrive(influences.moves);
@@ -139,16 +143,9 @@ class Reference final : public Solver {
     Nodes nodes() const override { return {positions_, normals_}; }
 
     State state() const override {
-        // Staggered velocities lie `lag` behind the positions: half a kick brings them up.
-        Pass pass = world_.pass;
-        pass.kick = float(lag_ / (1 + body_.damping * lag_));
-        pass.tips = pass.drags = 0;
-        pass.wind.w = 0;
         State state = save();
         state.lag = 0;
-        for (std::size_t i = 0; i < body_.count() && lag_ > 0; ++i)
-            if (const Node node = load(now_, i); node.inverse_mass > 0)
-                state.velocities[i] += dvec3(Real(pass.kick) * see(i, now_, pass).acceleration(node));
+        for (std::size_t i = 0; i < body_.count(); ++i) state.velocities[i] = dvec3(velocity_now(i));
         return state;
     }
 
@@ -161,15 +158,43 @@ class Reference final : public Solver {
     }
 
     void restore(const State& state) override {
+        assert(state.positions.size() == body_.count() && state.velocities.size() == body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {
             now_.positions[i] = Real3(state.positions[i]);
             now_.velocities[i] = Real3(state.velocities[i]);
         }
         lag_ = state.lag;
+        if (lag_ > 0 && !scheme_.staggered) {  // a staggered scheme's state: this one wants velocities of now
+            for (std::size_t i = 0; i < body_.count(); ++i) first_.velocities[i] = velocity_now(i);
+            std::swap(now_.velocities, first_.velocities);
+            lag_ = 0;
+        }
         publish();
     }
 
  private:
+    bool names_nodes(const Influences& influences) const {
+        auto known = [&](int node) { return node >= 0 && std::size_t(node) < body_.count(); };
+        for (const Drag& drag : influences.drags)
+            if (!known(drag.node)) return false;
+        for (const Move& move : influences.moves)
+            if (move.nodes.size() != move.to.size() ||
+                !std::all_of(move.nodes.begin(), move.nodes.end(), known))
+                return false;
+        return true;
+    }
+
+    // The velocity at the time of the positions: half a kick brings up what lies `lag` behind.
+    Real3 velocity_now(std::size_t i) const {
+        const Node node = load(now_, i);
+        if (!(lag_ > 0 && node.inverse_mass > 0)) return node.velocity;
+        Pass pass = world_.pass;
+        pass.tips = pass.drags = 0;
+        pass.wind.w = 0;
+        const double kick = lag_ / (1 + body_.damping * lag_);
+        return node.velocity + Real(kick) * see(i, now_, pass).acceleration(node);
+    }
+
     // One step, stage after stage: the neighbours move too. It ends in now_, and first_ holds where it began.
     void one_step(double time, Stats& stats, const Influences& influences) {
         Pass& pass = world_.pass;
@@ -218,6 +243,7 @@ class Reference final : public Solver {
     // N s, that tips and drags give to the nodes in this pass, and get back.
     void count_impulses(const Moving<Real>& at, double seconds, Stats& stats) const {
         const Pass& pass = world_.pass;
+        if (!(seconds > 0)) return;  // a stage that only drifts
         for (std::size_t t = 0; t < stats.reactions.size(); ++t)
             for (std::size_t i = 0; i < body_.count(); ++i)
                 stats.reactions[t] -= seconds * dvec3(see(i, at, pass).tip_force(at.positions[i], int(t)));
@@ -252,7 +278,7 @@ class Reference final : public Solver {
                 pass,
                 now,
                 int(i),
-                &world_.springs.ties[i * std::size_t(world_.springs.width)],
+                world_.springs.ties.data() + i * std::size_t(world_.springs.width),
                 Real(body_.area[i]),
                 Real(body_.cover[i])};
     }
@@ -268,7 +294,7 @@ class Reference final : public Solver {
             for (const Tie& tie : world_.springs.of(i)) {
                 if (!(tie.share * tie.stiffness > 0)) continue;
                 const Real3 along = now_.positions[std::size_t(tie.to)] - now_.positions[i];
-                const Real longest = 10 * Real(tie.rest);
+                const Real longest = 10 * Real(std::max(tie.rest, body_.spacing));
                 if (!(glm::dot(along, along) <= longest * longest)) return true;
             }
         }
