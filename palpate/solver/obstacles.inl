@@ -15,7 +15,8 @@ FN Real3 surface_velocity(Obstacle o, Real3 p) { return xyz(o.velocity) + cross(
 
 FN Real signed_one(Real a) { return select(a < Real(0.0f), Real(-1.0f), Real(1.0f)); }
 
-// Outside the box's core the way out leads away from the nearest point of the core, inside it through the nearest face.
+// Outside the box's core the way out leads away from the nearest point of the core, inside it through the nearest
+// face.
 FN Contact in_round_box(Obstacle o, Real3 p) {
     Real3 side = Real3(signed_one(p.x), signed_one(p.y), signed_one(p.z));
     Real3 q = Real3(side.x * p.x, side.y * p.y, side.z * p.z) - xyz(o.size);
@@ -38,7 +39,8 @@ FN Contact at_triangle(Real3 was, Real3 p, Real3 a, Real3 b, Real3 c) {
     Real side = signed_one(before);
     Real part = select(height * side < Real(0.0f), before * (Real(1.0f) / (before - height)), Real(1.0f));
     Real3 at = was + part * (p - was);
-    Real within = min(dot(cross(b - a, at - a), normal), min(dot(cross(c - b, at - b), normal), dot(cross(a - c, at - c), normal)));
+    Real left_of_ab = dot(cross(b - a, at - a), normal), left_of_bc = dot(cross(c - b, at - b), normal);
+    Real within = min(min(left_of_ab, left_of_bc), dot(cross(a - c, at - c), normal));
     // Triangles overlap by a hair, so that rounding leaves no seam between them.
     Real hair = Real(-1e-4f) * dot(cross(b - a, c - a), normal);
     Contact contact;

@@ -4,6 +4,7 @@
 #include "palpate/body/select.h"
 #include "palpate/solver/reference/reference.h"
 #include "palpate/solver/solver.h"
+#include "tests/integrators.h"
 #include "tests/shapes.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -30,15 +31,7 @@ mat3 turned(float degrees, vec3 axis) {
 }
 
 class Contact : public ::testing::TestWithParam<Integrator> {};
-INSTANTIATE_TEST_SUITE_P(Every, Contact,
-                         ::testing::Values(Integrator::explicit_euler, Integrator::semi_implicit_euler,
-                                           Integrator::verlet, Integrator::midpoint,
-                                           Integrator::verlet_midpoint, Integrator::rk4),
-                         [](const auto& each) {
-                             std::string name(name_of(each.param));
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Every, Contact, ::testing::ValuesIn(every_integrator()), test_name);
 
 std::unique_ptr<Solver> solver_for(const Body& body, Integrator integrator, double step,
                                    std::vector<Collider> colliders, vec3 gravity = {0, -9.81f, 0}) {

@@ -3,6 +3,7 @@
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
 #include "palpate/solver/solver.h"
+#include "tests/integrators.h"
 #include "tests/shapes.h"
 
 #include <gtest/gtest.h>
@@ -91,15 +92,7 @@ void run(const std::string& name, const Body& body, Integrator integrator, const
 }
 
 class Everything : public ::testing::TestWithParam<Integrator> {};
-INSTANTIATE_TEST_SUITE_P(Every, Everything,
-                         ::testing::Values(Integrator::explicit_euler, Integrator::semi_implicit_euler,
-                                           Integrator::verlet, Integrator::midpoint,
-                                           Integrator::verlet_midpoint, Integrator::rk4),
-                         [](const auto& each) {
-                             std::string name(name_of(each.param));
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Every, Everything, ::testing::ValuesIn(every_integrator()), test_name);
 
 TEST_P(Everything, BodyTimesCollider) {
     for (const auto& [body_name, body] : bodies())

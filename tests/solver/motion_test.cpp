@@ -6,6 +6,7 @@
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 #include "tests/forces.h"
+#include "tests/integrators.h"
 #include "tests/shapes.h"
 
 #include <gtest/gtest.h>
@@ -39,11 +40,7 @@ class Motion : public ::testing::TestWithParam<Integrator> {
 constexpr Integrator undamped_ones[] = {Integrator::semi_implicit_euler, Integrator::verlet,
                                         Integrator::verlet_midpoint, Integrator::rk4};
 
-INSTANTIATE_TEST_SUITE_P(Every, Motion, ::testing::ValuesIn(undamped_ones), [](const auto& each) {
-    std::string name(name_of(each.param));
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Every, Motion, ::testing::ValuesIn(undamped_ones), test_name);
 
 bool first_order(Integrator integrator) { return integrator == Integrator::semi_implicit_euler; }
 
