@@ -314,5 +314,21 @@ TEST(Run, EveryShippedSceneStarts) {
     }
 }
 
+// The slab that one scene writes is what the other folds: its two ends have gone down by what 30° take.
+TEST(Run, TheFiguresOfTheDocsRun) {
+    Scratch scratch;
+    const std::string folder = PALPATE_SOURCE_DIR "/examples/figures/";
+    RunSettings settings;
+    settings.frames = 0;
+    settings.surface = scratch / "slab.ply";
+    run(read_scene(folder + "slab.toml"), settings);
+    settings.frames = 40;
+    settings.surface = scratch / "folded.ply";
+    const std::string fold = read_text(folder + "fold.toml");
+    EXPECT_FALSE(run(parse_scene(fold, "fold", scratch / ""), settings).diverged);
+    const Bounds box = bounds(read_mesh(settings.surface, Units::metres));
+    EXPECT_LE(std::abs(box.size().x - (0.2 * std::cos(0.5236) + 0.06 * std::sin(0.5236))), 0.004);
+}
+
 }  // namespace
 }  // namespace palpate
