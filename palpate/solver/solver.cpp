@@ -16,6 +16,13 @@ namespace {
 constexpr double most_steps_per_frame = 1000;
 constexpr std::size_t most_triangles = 1000;
 
+const char* remedy(Integrator integrator, bool for_the_tools) {
+    if (for_the_tools) return "use softer tools, or a heavier body";
+    if (integrator == Integrator::explicit_euler || integrator == Integrator::midpoint)
+        return "choose verlet, or give the body more damping";
+    return "use a softer material, a larger spacing or a heavier body, and check its units";
+}
+
 void check_step(const Body& body, const Simulation& simulation, double frequency) {
     const double touched = touched_frequency(body, frequency, simulation.contact, simulation.pull);
     const auto integrator = simulation.integrator;
@@ -34,10 +41,7 @@ void check_step(const Body& body, const Simulation& simulation, double frequency
     if (!(simulation.frame / step <= most_steps_per_frame))
         throw Error(fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of {:.3g} s",
                                 name_of(integrator), simulation.frame / step, step, simulation.frame),
-                    where,
-                    integrator == Integrator::explicit_euler || integrator == Integrator::midpoint
-                        ? "choose verlet, or give the body more damping"
-                        : "use a softer material, a larger spacing or a heavier body, and check its units");
+                    where, remedy(integrator, touched > 2 * frequency));
 }
 
 void check_colliders(const Simulation& simulation) {
