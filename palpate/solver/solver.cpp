@@ -16,6 +16,8 @@ namespace {
 constexpr double most_steps_per_frame = 1000;
 constexpr std::size_t most_triangles = 1000;
 
+std::string name_in_errors(const Body& body) { return body.name.empty() ? "the body" : "body " + body.name; }
+
 const char* remedy(Integrator integrator, bool for_the_tools) {
     if (for_the_tools) return "use softer tools, or a heavier body";
     if (integrator == Integrator::explicit_euler || integrator == Integrator::midpoint)
@@ -27,7 +29,7 @@ void check_step(const Body& body, const Simulation& simulation, double frequency
     const double touched = touched_frequency(body, frequency, simulation.contact, simulation.pull);
     const auto integrator = simulation.integrator;
     const double bound = longest_step(integrator, touched, body.damping, body.link_damping);
-    const std::string where = body.name.empty() ? "the body" : "body " + body.name;
+    const std::string where = name_in_errors(body);
     if (simulation.step > bound && !simulation.force)
         throw Error(fmt::format("a step of {:.4g} s is above {}'s stability bound of {:.4g} s",
                                 simulation.step, name_of(integrator), bound),
@@ -63,8 +65,7 @@ int steps_within(double seconds, double longest) {
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation) {
     const double frequency = highest_frequency(body);
     if (!std::isfinite(frequency))
-        throw Error("masses or springs that are not finite",
-                    body.name.empty() ? "the body" : "body " + body.name,
+        throw Error("masses or springs that are not finite", name_in_errors(body),
                     "give all nodes a mass above zero, and all springs finite stiffness");
     check_step(body, simulation, frequency);
     check_colliders(simulation);

@@ -145,7 +145,8 @@ class Reference final : public Solver {
     State state() const override {
         State state = save();
         state.lag = 0;
-        for (std::size_t i = 0; i < body_.count(); ++i) state.velocities[i] = dvec3(velocity_now(i));
+        const Pass pass = untouched();
+        for (std::size_t i = 0; i < body_.count(); ++i) state.velocities[i] = dvec3(velocity_now(i, pass));
         return state;
     }
 
@@ -165,7 +166,8 @@ class Reference final : public Solver {
         }
         lag_ = state.lag;
         if (lag_ > 0 && !scheme_.staggered) {  // a staggered scheme's state: this one wants velocities of now
-            for (std::size_t i = 0; i < body_.count(); ++i) first_.velocities[i] = velocity_now(i);
+            const Pass pass = untouched();
+            for (std::size_t i = 0; i < body_.count(); ++i) first_.velocities[i] = velocity_now(i, pass);
             std::swap(now_.velocities, first_.velocities);
             lag_ = 0;
         }
@@ -184,13 +186,18 @@ class Reference final : public Solver {
         return true;
     }
 
-    // The velocity at the time of the positions: half a kick brings up what lies `lag` behind.
-    Real3 velocity_now(std::size_t i) const {
-        const Node node = load(now_, i);
-        if (!(lag_ > 0 && node.inverse_mass > 0)) return node.velocity;
+    // The pass with tips, drags and wind gone.
+    Pass untouched() const {
         Pass pass = world_.pass;
         pass.tips = pass.drags = 0;
         pass.wind.w = 0;
+        return pass;
+    }
+
+    // The velocity at the time of the positions: half a kick brings up what lies `lag` behind.
+    Real3 velocity_now(std::size_t i, const Pass& pass) const {
+        const Node node = load(now_, i);
+        if (!(lag_ > 0 && node.inverse_mass > 0)) return node.velocity;
         const double kick = lag_ / (1 + body_.damping * lag_);
         return node.velocity + Real(kick) * see(i, now_, pass).acceleration(node);
     }
