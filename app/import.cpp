@@ -1,12 +1,16 @@
+#include "app/choice.h"
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "palpate/base/clock.h"
+#include "palpate/base/files.h"
+#include "palpate/base/memory.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/write.h"
-#include "palpate/scene/build.h"
+#include "palpate/scene/surface.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -15,10 +19,25 @@ namespace {
 using namespace palpate;
 
 struct Arguments {
-    std::string in, out, units;
+    std::string in, out, units, solid, report;
     std::vector<float> rotate;
     BodyRecipe recipe;
 };
+
+void write_report(const Arguments& arguments, const CleanSurface& surface, double seconds) {
+    const vec3 size = bounds(surface.mesh).size();
+    const nlohmann::ordered_json report = {{"in", arguments.in},
+                                           {"out", arguments.out},
+                                           {"vertices", surface.mesh.positions.size()},
+                                           {"faces", surface.mesh.triangles.size()},
+                                           {"size_m", {size.x, size.y, size.z}},
+                                           {"volume_m3", volume(surface.mesh)},
+                                           {"steps", surface.steps},
+                                           {"notes", surface.notes},
+                                           {"seconds", seconds},
+                                           {"peak_memory_bytes", peak_memory()}};
+    write_text(arguments.report, report.dump(2) + "\n");
+}
 
 void import_file(Arguments& arguments) {
     const double start = now();
@@ -26,12 +45,12 @@ void import_file(Arguments& arguments) {
     recipe.name = std::filesystem::path(arguments.in).filename().string();
     const std::string file = std::filesystem::absolute(arguments.in).string();
     (is_volume(arguments.in) ? recipe.volume : recipe.surface) = file;
-    if (!recipe.volume.empty() && !recipe.iso)
-        throw CLI::ValidationError("--iso", "a volume needs the value at its surface, such as --iso 60.5");
-    if (!arguments.units.empty()) {
-        recipe.units = value_of<Units>(arguments.units);
-        if (!recipe.units) throw CLI::ValidationError("--units", "choose from " + all_names<Units>());
-    }
+    if (recipe.volume.empty() && recipe.iso)
+        throw CLI::ValidationError("--iso", "only a volume has a value at its surface");
+    if (recipe.size > 0 && !arguments.units.empty())
+        throw CLI::ValidationError("--size", "beside --units, of which one must count");
+    recipe.units = chosen<Units>("--units", arguments.units);
+    recipe.repair.solid = chosen<SolidBy>("--solid", arguments.solid).value_or(SolidBy::walls);
     if (arguments.rotate.size() == 3)
         recipe.rotate = vec3(arguments.rotate[0], arguments.rotate[1], arguments.rotate[2]);
 
@@ -39,10 +58,12 @@ void import_file(Arguments& arguments) {
     const CleanSurface surface = make_surface(recipe, {}, terminal_progress());
     write_mesh(surface.mesh, arguments.out);
     end_progress();
+    const double seconds = now() - start;
+    if (!arguments.report.empty()) write_report(arguments, surface, seconds);
     for (const std::string& step : surface.steps) fmt::print("  {}\n", step);
-    if (const std::string warning = size_warning(surface.mesh); !warning.empty())
-        fmt::print("  note: {}\n", warning);
-    fmt::print("wrote {} in {:.1f} s\n", arguments.out, now() - start);
+    for (const std::string& note : surface.notes) fmt::print("  note: {}\n", note);
+    fmt::print("wrote {} in {:.1f} s, with {} MB of memory at most\n", arguments.out, seconds,
+               peak_memory() >> 20);
 }
 
 }  // namespace
@@ -52,9 +73,11 @@ void add_import(CLI::App& app) {
     BodyRecipe& recipe = arguments->recipe;
     recipe.largest = false;
     CLI::App* command = app.add_subcommand("import", "Make a clean surface of a mesh or a volume");
-    command->add_option("in", arguments->in, "a mesh (PLY, OBJ) or a volume (NIfTI)")->required();
-    command->add_option("-o,--out", arguments->out, "PLY or OBJ, in metres")->required();
-    command->add_option("--iso", recipe.iso, "value at a volume's surface; half-integer for integer volumes");
+    command->add_option("in", arguments->in, "a mesh, a volume, or a folder with a DICOM series")->required();
+    command->add_option("-o,--out", arguments->out, "PLY, OBJ, STL, GLB or glTF, in metres")->required();
+    command->add_option(
+        "--iso", recipe.iso,
+        "value at a volume's surface, half-integer for integer volumes [as its values suggest]");
     command->add_flag("--largest", recipe.largest, "keep only the largest connected part");
     command->add_option("--smooth", recipe.smooth, "passes of smoothing [10 for a volume, 0 for a mesh]")
         ->check(CLI::Range(0, 1000));
@@ -62,6 +85,22 @@ void add_import(CLI::App& app) {
         ->check(CLI::NonNegativeNumber);
     command->add_option("--units", arguments->units,
                         "of the file: m, cm, mm, um [mm for a volume, m for a mesh]");
+    command->add_option("--size", recipe.size, "m: instead, scale it so that its longest side is this")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--weld", recipe.repair.weld, "m: join vertices no farther apart [those in one place]")
+        ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--specks", recipe.repair.specks,
+                     "drop parts shorter than this fraction of the longest; 0 keeps all [0.01]")
+        ->check(CLI::Range(0.0, 0.999));
+    command->add_flag("--sheet", recipe.sheet, "it is cloth: let it stay open");
+    command->add_option(
+        "--solid", arguments->solid,
+        "how it becomes a solid: walls (mended; by voxels where that fails) or voxels [walls]");
+    command->add_option("--voxel", recipe.repair.voxel, "m: of what voxels make [1/200 of its longest side]")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--report", arguments->report, "write what was done, JSON");
     command->add_option("--rotate", arguments->rotate, "degrees about x, y, z")
         ->expected(3)
         ->check(CLI::Range(-360.0, 360.0));

@@ -1,3 +1,4 @@
+#include "app/choice.h"
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "palpate/palpate.h"
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace {
@@ -16,30 +18,79 @@ using Json = nlohmann::ordered_json;
 
 Json list(vec3 v) { return {v.x, v.y, v.z}; }
 
+// What a mesh may suffer from: a key, how many there are, and how a verdict names them.
+struct Ailment {
+    const char* key;
+    std::size_t count;
+    const char* name;  // of those that keep it from being a solid; nothing for the others
+};
+
+std::vector<Ailment> ailments(const Soundness& sound, const Nesting& nested, std::size_t cuts) {
+    return {{"open_edges", sound.open_edges, "open edges"},
+            {"holes", sound.holes, nullptr},
+            {"bad_edges", sound.bad_edges, nullptr},
+            {"crowded_edges", sound.crowded_edges, "edges with more than two faces"},
+            {"clashing_edges", sound.clashing_edges, "edges whose faces turn against each other"},
+            {"shared_vertices", sound.shared_vertices, nullptr},
+            {"unused_vertices", sound.unused_vertices, nullptr},
+            {"copied_faces", sound.copied_faces, "faces twice in one place"},
+            {"collapsed_faces", sound.collapsed_faces, "collapsed faces"},
+            {"flat_faces", sound.flat_faces, nullptr},
+            {"one_sided_parts", sound.one_sided_parts, "parts with one side only"},
+            {"inside_out_parts", nested.inside_out, "parts inside out"},
+            {"nested_parts", nested.redundant, "parts inside others"},
+            {"cavities", nested.cavities, nullptr},
+            {"specks", sound.specks, nullptr},
+            {"cutting_faces", cuts, "pairs of faces that cut through each other"}};
+}
+
+std::string verdict(const std::vector<Ailment>& all, double volume) {
+    std::string found;
+    for (const Ailment& one : all)
+        if (one.name && one.count > 0)
+            found += fmt::format("{}{} {}", found.empty() ? "" : ", ", one.count, one.name);
+    if (found.empty() && volume > 0) return "a solid";
+    if (found.empty()) found = "it encloses nothing";
+    return "no solid: " + found + "; palpate import mends what can be mended";
+}
+
 Json describe(const Mesh& mesh) {
     const Soundness sound = soundness(mesh);
     const Bounds box = bounds(mesh);
-    return {{"kind", "mesh"},
-            {"vertices", mesh.positions.size()},
-            {"faces", mesh.triangles.size()},
-            {"parts", sound.parts},
-            {"open_edges", sound.open_edges},
-            {"bad_edges", sound.bad_edges},
-            {"size_m", list(box.size())},
-            {"low_m", list(box.empty() ? vec3(0) : box.low)},
-            {"high_m", list(box.empty() ? vec3(0) : box.high)},
-            {"volume_m3", volume(mesh)}};
+    Json about = {{"kind", "mesh"},
+                  {"vertices", mesh.positions.size()},
+                  {"faces", mesh.triangles.size()},
+                  {"parts", sound.parts},
+                  {"size_m", list(box.size())},
+                  {"low_m", list(box.empty() ? vec3(0) : box.low)},
+                  {"high_m", list(box.empty() ? vec3(0) : box.high)},
+                  {"volume_m3", volume(mesh)},
+                  {"euler", sound.euler}};
+    const std::vector<Ailment> all = ailments(sound, nesting(mesh), intersections(mesh).faces.size());
+    for (const Ailment& one : all) about[one.key] = one.count;
+    about["longest_hole_m"] = sound.longest_hole;
+    about["verdict"] = verdict(all, volume(mesh));
+    return about;
 }
 
 Json describe(const Volume& volume) {
-    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
-    return {{"kind", "volume"},
-            {"voxels", {volume.dims.x, volume.dims.y, volume.dims.z}},
-            {"spacing_m", list(volume.spacing)},
-            {"size_m", list(volume.spacing * vec3(volume.dims))},
-            {"origin_m", list(volume.origin)},
-            {"lowest_value", *low},
-            {"highest_value", *high}};
+    const Histogram values = histogram(volume, 64);
+    const mat3 d = volume.direction;
+    Json about = {{"kind", "volume"},
+                  {"voxels", {volume.dims.x, volume.dims.y, volume.dims.z}},
+                  {"spacing_m", list(volume.spacing)},
+                  {"size_m", list(volume.spacing * vec3(volume.dims))},
+                  {"origin_m", list(volume.origin)},
+                  {"axes", {list(d[0]), list(d[1]), list(d[2])}},
+                  {"lowest_value", values.lowest},
+                  {"highest_value", values.highest},
+                  {"whole_numbers", values.whole},
+                  {"suggested_iso", nullptr},
+                  {"histogram", {{"from", values.from}, {"to", values.to}, {"counts", values.counts}}}};
+    if (const auto iso = suggested_iso(histogram(volume))) about["suggested_iso"] = *iso;
+    for (const double percent : {1, 25, 50, 75, 99})
+        about["percentiles"][fmt::format("{}", percent)] = percentile(values, percent);
+    return about;
 }
 
 Json describe(const Scene& scene) {
@@ -70,28 +121,53 @@ bool is_scene(const std::string& name) {
 }
 
 Json look_at(const std::string& name, const std::string& units) {
-    const auto unit = value_of<Units>(units);
-    if (!units.empty() && !unit) throw CLI::ValidationError("--units", "choose from " + all_names<Units>());
+    const auto unit = chosen<Units>("--units", units);
     if (is_scene(name)) return describe(read_scene(name));
     if (is_volume(name)) return describe(read_volume(name, unit.value_or(Units::millimetres)));
-    Mesh mesh = read_mesh(name, unit.value_or(Units::metres));
-    weld(mesh);  // many files write a vertex once for each of its faces
+    std::vector<std::string> notes;
+    Mesh mesh = read_mesh(name, unit.value_or(Units::metres), &notes);
+    // Many files write a vertex once for each of its faces. What is closed as it stands may have two in one
+    // place, which hold apart what would else touch.
+    if (!soundness(mesh).closed()) weld(mesh);
     Json about = describe(mesh);
-    if (const std::string warning = size_warning(mesh); !warning.empty()) about["note"] = warning;
+    if (const std::string warning = size_warning(mesh); !warning.empty()) notes.push_back(warning);
+    about["notes"] = notes;
     return about;
+}
+
+// A bar for each bin, its length by the square root of the count, so that rare values show beside air.
+void print_histogram(const Json& histogram) {
+    const auto counts = histogram["counts"].get<std::vector<double>>();
+    const double from = histogram["from"], to = histogram["to"];
+    constexpr std::size_t rows = 16;
+    const std::size_t each = (counts.size() + rows - 1) / rows;
+    std::vector<double> sums((counts.size() + each - 1) / each);
+    for (std::size_t i = 0; i < counts.size(); ++i) sums[i / each] += counts[i];
+    const double most = *std::max_element(sums.begin(), sums.end());
+    fmt::print("  how many voxels have which values (bars by the square root):\n");
+    for (std::size_t row = 0; row < sums.size(); ++row) {
+        const double value = from + (to - from) * double(row * each) / double(counts.size());
+        const auto length = std::size_t(std::ceil(50 * std::sqrt(sums[row] / most)));
+        fmt::print("  {:>10.5g}  {:<50}  {}\n", value, std::string(length, '#'),
+                   grouped((long long)sums[row]));
+    }
 }
 
 // A value as a person reads it: texts without quotes, lists with spaces.
 std::string plain(const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
-    if (value.is_array() && !value.empty() && value[0].is_number()) {
+    if (value.is_array() && !value.empty() && !value[0].is_object()) {
         std::string text;
-        for (const Json& one : value) text += (text.empty() ? "" : " x ") + plain(one);
+        const char* between = value[0].is_number() ? " x " : value[0].is_array() ? ", " : "; ";
+        for (const Json& one : value) text += (text.empty() ? "" : between) + plain(one);
         return text;
     }
     return value.dump();
 }
+
+// What a person need not be told: that there is none of it.
+bool is_nothing(const Json& value) { return value == 0 || (value.is_array() && value.empty()); }
 
 }  // namespace
 
@@ -114,7 +190,9 @@ void add_info(CLI::App& app) {
             return;
         }
         std::vector<std::pair<std::string, std::string>> rows;
-        for (const auto& [key, value] : about.items()) rows.emplace_back(key, plain(value));
+        for (const auto& [key, value] : about.items())
+            if (key != "histogram" && !is_nothing(value)) rows.emplace_back(key, plain(value));
         print_table(rows);
+        if (about.contains("histogram")) print_histogram(about["histogram"]);
     });
 }

@@ -1,7 +1,9 @@
 #include "app/commands.h"
+#include "palpate/base/files.h"
 
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -15,9 +17,17 @@ int complain(const char* what) {
     return failed;
 }
 
+// Told to stop, the command leaves no half of a file behind, and ends as if it had not listened.
+void stop(int signal) {
+    palpate::remove_unfinished();
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    for (int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
     CLI::App app("Deforms detailed surfaces in real time and lets people feel them.", "palpate");
     app.require_subcommand(1);
     add_run(app);

@@ -117,7 +117,13 @@ void add_run(CLI::App& app) {
     command->add_option("--report", settings.report, "write figures, JSON");
     command->add_option("--plot", settings.plot, "write force and indentation over time, SVG");
     command->add_option("--nodes", settings.nodes, "write the final nodes, CSV");
-    command->add_option("--surface", settings.surface, "write the final surface, PLY or OBJ");
+    command->add_option("--surface", settings.surface,
+                        "write the final surface: .ply, .obj, .stl, .vtp, .glb or .gltf");
+    command->add_option(
+        "--sequence", settings.sequence,
+        "write the surface as it moves: numbered .ply, .obj, .stl or .vtp, or one .pc2, .mdd or .glb");
+    command->add_option("--sequence-every", settings.sequence_every, "s between those [1/30]")
+        ->check(CLI::PositiveNumber);
     command->add_flag("--lattice", settings.lattice, "draw the springs over the surface");
     command->add_option("--set", arguments->changes, "change the scene, as in body.brain.nodes=5000")
         ->allow_extra_args(false);

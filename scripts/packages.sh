@@ -3,7 +3,8 @@
 build_packages=(
     g++ cmake ninja-build ccache pkg-config                                   # tools
     libglm-dev libfmt-dev                                                     # vectors, text
-    libinsighttoolkit5-dev libopenvdb-dev libboost-iostreams-dev libtbb-dev   # volumes, solids
+    libinsighttoolkit5-dev libgdcm-dev                                        # volumes
+    libopenvdb-dev libboost-iostreams-dev libtbb-dev                          # solids
     libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures
     libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver
     libtomlplusplus-dev libcli11-dev nlohmann-json3-dev                       # scenes, command line, reports
@@ -11,6 +12,8 @@ build_packages=(
 )
 data_packages=(mricron-data)  # the brain and the head
 film_packages=(ffmpeg)
+fuzz_packages=(clang libclang-rt-14-dev)           # scripts/fuzz
+check_packages=(doxygen assimp-testmodels)  # the headers' pages; odd files of every format
 
 need_packages() {
     local missing=() name

@@ -14,6 +14,9 @@ class Error : public std::runtime_error {
         : std::runtime_error(
               one_line(std::string(what) + " in " + std::string(where) + "; " + std::string(remedy))) {}
 
+    /// The line of an Error that was thrown in another process.
+    explicit Error(const std::string& line) : std::runtime_error(one_line(line)) {}
+
  private:
     static std::string one_line(std::string text) {
         for (char& c : text)

@@ -4,6 +4,8 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -19,17 +21,43 @@ struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-// A file that is removed again unless it is renamed first.
-struct Temporary {
-    std::filesystem::path path;
-    bool keep = false;
-    ~Temporary() {
-        std::error_code ignored;
-        if (!keep) std::filesystem::remove(path, ignored);
-    }
-};
+// The names of unfinished files, as a handler of signals may read them: at places that do not move. One that
+// finds no place is only removed less surely.
+std::array<std::atomic<const char*>, 64> unfinished{};
+
+void note(const char* name) {
+    for (auto& place : unfinished)
+        if (const char* nothing = nullptr; place.compare_exchange_strong(nothing, name)) return;
+}
+
+void forget(const char* name) {
+    for (auto& place : unfinished)
+        if (const char* noted = name; place.compare_exchange_strong(noted, nullptr)) return;
+}
 
 }  // namespace
+
+Unfinished::Unfinished(const std::filesystem::path& path)
+    : path_(path), name_(path.string() + ".part" + std::to_string(getpid())) {
+    note(name_.c_str());
+}
+
+Unfinished::~Unfinished() {
+    forget(name_.c_str());
+    std::error_code ignored;
+    if (!finished_) std::filesystem::remove(name_, ignored);
+}
+
+void Unfinished::finish() {
+    if (std::rename(name_.c_str(), path_.c_str()) != 0)
+        fail("cannot write", path_, "check that no folder has this name");
+    finished_ = true;
+}
+
+void remove_unfinished() noexcept {
+    for (auto& place : unfinished)
+        if (const char* name = place.exchange(nullptr)) unlink(name);
+}
 
 std::string read_text(const std::filesystem::path& path) {
     std::error_code error;
@@ -69,19 +97,13 @@ void write_file(const std::filesystem::path& name, const std::function<void(std:
         if (!flushed(file.get())) fail("cannot write", path, "make room on the disk");
         return;
     }
-    Temporary temporary{temporary_beside(path)};
-    std::unique_ptr<std::FILE, Close> file(std::fopen(temporary.path.c_str(), "wb"));
+    Unfinished whole(path);
+    std::unique_ptr<std::FILE, Close> file(std::fopen(whole.name().c_str(), "wb"));
     if (!file) fail("cannot write", path, "check that the folder exists and may be written to");
     write(file.get());
     if (!flushed(file.get())) fail("cannot write", path, "make room on the disk");
     file.reset();
-    if (std::rename(temporary.path.c_str(), path.c_str()) != 0)
-        fail("cannot write", path, "check that no folder has this name");
-    temporary.keep = true;
-}
-
-std::filesystem::path temporary_beside(const std::filesystem::path& path) {
-    return path.string() + ".part" + std::to_string(getpid());
+    whole.finish();
 }
 
 void write_text(const std::filesystem::path& path, std::string_view text) {

@@ -10,15 +10,34 @@ namespace palpate {
 /// The whole text of a file. Throws Error if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 
+/// A file on its way: filled under another name beside its own (a rename across disks would be a copy), and
+/// gone again with this object unless finish() has given it its own name.
+class Unfinished {
+ public:
+    explicit Unfinished(const std::filesystem::path& path);
+    ~Unfinished();
+    Unfinished(const Unfinished&) = delete;
+    Unfinished& operator=(const Unfinished&) = delete;
+
+    /// The name to write under.
+    const std::filesystem::path& name() const { return name_; }
+    /// Takes the place of an older file. Throws Error.
+    void finish();
+
+ private:
+    std::filesystem::path path_, name_;
+    bool finished_ = false;
+};
+
+/// Removes every file that is still unfinished. For the moment when the process is told to stop: a handler of
+/// signals may call it.
+void remove_unfinished() noexcept;
+
 /// Writes a file whole or not at all: `write` fills a temporary file beside it, which takes the final name
 /// only when everything has reached the disk. If `write` throws, or the disk is full, the temporary file is
 /// removed, an older file under the final name stays as it was, and Error is thrown.
 /// A link is followed; a pipe or a device is written to directly.
 void write_file(const std::filesystem::path& path, const std::function<void(std::FILE*)>& write);
-
-/// The name of the temporary file that becomes `path`: beside it, because a rename across disks would be a
-/// copy.
-std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
 /// write_file for a text that is ready.
 void write_text(const std::filesystem::path& path, std::string_view text);

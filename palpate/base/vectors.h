@@ -2,6 +2,8 @@
 // Vectors and matrices with GLSL's words, from glm.
 #include <glm/glm.hpp>
 
+#include <limits>
+
 namespace palpate {
 
 using glm::dmat2;
@@ -21,8 +23,8 @@ using glm::vec4;
 
 /// A box along the axes. A new one is empty: `low` above `high`.
 struct Bounds {
-    vec3 low = vec3(1e30f);
-    vec3 high = vec3(-1e30f);
+    vec3 low = vec3(std::numeric_limits<float>::max());
+    vec3 high = vec3(std::numeric_limits<float>::lowest());
 
     bool empty() const { return !(low.x <= high.x); }
     vec3 size() const { return empty() ? vec3(0) : high - low; }

@@ -29,7 +29,9 @@ struct Stencil {
     /// spring takes the mean of its ends'. Empty: 1 everywhere.
     std::vector<float> strength;
 
+    /// Whether shares are quarters, rather than whole or none.
     bool in_quarters() const { return links.size() <= 21; }
+    /// How much of a link a node has, 0 to 4.
     int quarters(std::size_t node, std::size_t link) const {
         return in_quarters() ? int(shares[node] >> 3 * link & 7) : int(shares[node] >> link & 1) * 4;
     }
@@ -75,7 +77,8 @@ struct Body {
     float link_damping = 0;  // s: each spring resists its stretching with this × stiffness, N s/m
 
     std::size_t count() const { return positions.size(); }
-    const Stencil& stencil() const { return std::get<Stencil>(springs); }  // of a body in a grid
+    /// Of a body in a grid.
+    const Stencil& stencil() const { return std::get<Stencil>(springs); }
 };
 
 /// The springs of any body written out; a stencil's links stay in their order.
@@ -101,6 +104,7 @@ struct State {
 /// pressed together too hard gets stuck like this; it takes a finer lattice or a wider tip to avoid it.
 std::size_t inverted_cells(const Body& body, std::span<const vec3> positions);
 
+/// What motion and stretched springs hold.
 struct Energy {
     double kinetic = 0;  // J
     double elastic = 0;  // J, in the springs

@@ -7,6 +7,7 @@
 
 namespace palpate {
 
+/// What a cloth is made of. Give a density or a mass.
 struct ClothSettings {
     SpringKinds stiffness = {.structural = 100, .shear = 50, .flexion = 5};  // N/m
     float density = 0;                                                       // kg/m²; a shirt is 0.15, or

@@ -73,6 +73,7 @@ struct OnFrames {
     vec3 normal;               // of the surface at rest, unit
 };
 
+/// All vertices on frames, and the frames that they share.
 struct Framed {
     std::vector<Frame> frames;
     std::vector<Spoke> spokes;

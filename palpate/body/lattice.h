@@ -6,6 +6,7 @@
 
 namespace palpate {
 
+/// How fine a lattice is, and what it is made of.
 struct LatticeSettings {
     int nodes = 20'000;  // how many nodes to aim for; what comes out is the nearest that a spacing can give
     float spacing = 0;   // m; if given, it decides and `nodes` does not

@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/mesh/mesh.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,6 +9,7 @@
 namespace palpate {
 
 using Index = std::uint32_t;
+constexpr Index none = ~Index(0);
 
 /// Which faces meet at each vertex; what every question about neighbours starts from. Corner 3f + k is corner
 /// k of face f.
@@ -25,6 +27,7 @@ class Corners {
     std::span<const Index> at(std::size_t vertex) const {
         return std::span(corners_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }
+    std::size_t vertices() const { return first_.size() - 1; }
     Index vertex(Index corner) const { return triangles_[corner / 3][corner % 3]; }
 
     /// The corners that follow and precede within the same face.
@@ -36,5 +39,73 @@ class Corners {
     std::vector<Index> first_;    // where each vertex's corners begin
     std::vector<Index> corners_;  // by vertex
 };
+
+/// A face's side along an edge, as seen from the edge's lower vertex.
+struct Side {
+    Index other;   // the edge's higher vertex
+    Index corner;  // where the side begins, in its face
+    bool up;       // whether it runs from the lower vertex to the higher
+
+    /// The face's corners at the edge's two ends.
+    Index low() const { return up ? corner : Corners::next(corner); }
+    Index high() const { return up ? Corners::next(corner) : corner; }
+};
+
+/// Calls f(lower vertex, sides) once for each edge, with all the faces' sides along it. The two sides of a
+/// collapsed face, from a vertex to itself, count as an edge of their own.
+template <class F>
+void for_each_edge(const Corners& corners, F f) {
+    std::vector<Side> sides;
+    for (Index v = 0; v < corners.vertices(); ++v) {
+        sides.clear();
+        for (Index c : corners.at(v)) {
+            sides.push_back({corners.vertex(Corners::next(c)), c, true});
+            sides.push_back({corners.vertex(Corners::previous(c)), Corners::previous(c), false});
+        }
+        std::erase_if(sides, [&](Side side) { return side.other < v; });
+        std::sort(sides.begin(), sides.end(), [](Side a, Side b) { return a.other < b.other; });
+        for (auto from = sides.begin(); from != sides.end();) {
+            const auto to =
+                std::find_if(from, sides.end(), [&](Side side) { return side.other != from->other; });
+            f(v, std::span<const Side>(from, to));
+            from = to;
+        }
+    }
+}
+
+/// Sets that grow together; of each, one member stands for all.
+class Groups {
+ public:
+    explicit Groups(std::size_t members) : parent_(members) {
+        for (Index i = 0; i < members; ++i) parent_[i] = i;
+    }
+    Index of(Index i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];  // halves the way for those behind
+        return i;
+    }
+    void unite(Index i, Index j) { parent_[of(j)] = of(i); }
+
+ private:
+    std::vector<Index> parent_;
+};
+
+/// For each corner, the corner from which the face beyond begins the same edge, running the other way; none
+/// at a border. Where an edge has many faces, those are twins between which lies matter and no other face.
+std::vector<Index> twins(const Mesh& mesh);
+
+/// Three corners in a line, or so nearly that rounding decides on which side of it the third lies.
+inline bool is_flat(const Mesh& mesh, uvec3 t) {
+    const dvec3 a(mesh.positions[t.x]), ab = dvec3(mesh.positions[t.y]) - a,
+                                        ac = dvec3(mesh.positions[t.z]) - a, bc = ac - ab;
+    const double longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
+    return glm::length(glm::cross(ab, ac)) <= 1e-6 * longest;
+}
+
+/// Drops what no longer fits when vertices or positions change.
+inline void drop_attributes(Mesh& mesh) {
+    mesh.normals.clear();
+    mesh.uvs.clear();
+    mesh.tangents.clear();
+}
 
 }  // namespace palpate

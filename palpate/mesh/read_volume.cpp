@@ -1,287 +1,90 @@
 #include "palpate/base/error.h"
 #include "palpate/mesh/ending.h"
+#include "palpate/mesh/formats/volumes.h"
 #include "palpate/mesh/read.h"
 
 #include <fmt/format.h>
-#include <itkNiftiImageIO.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <memory>
 #include <new>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 namespace palpate {
-namespace {
 
-// 1024³: twelve gigabytes while a volume of doubles is read.
-constexpr double most_voxels = 1 << 30;
-
-[[noreturn]] void refuse(std::string_view what, const std::filesystem::path& path,
-                         std::string_view remedy = "export it again") {
+void refuse(std::string_view what, const std::filesystem::path& path, std::string_view remedy) {
     throw Error(what, path.string(), remedy);
 }
 
-// The 348 bytes that every NIfTI-1 file begins with; its numbers may be in either byte order.
-struct Header {
-    static constexpr std::size_t size = 348;
-    std::array<char, size> bytes{};
+void check_sizes(const std::vector<double>& sizes, const std::filesystem::path& path) {
+    if (sizes.size() != 3)
+        refuse(fmt::format("{} dimensions instead of three", sizes.size()), path,
+               "give a volume of one number a voxel");
+    for (double size : sizes)
+        if (!(size >= 1)) refuse(fmt::format("a volume {} voxels wide", size), path);
+    if (!(sizes[0] * sizes[1] * sizes[2] <= most_voxels))
+        refuse(fmt::format("{} x {} x {} voxels, more than 2^30", sizes[0], sizes[1], sizes[2]), path,
+               "crop or shrink it");
+}
 
-    template <class T>
-    T load(const char* from) const {
-        char raw[sizeof(T)];
-        std::memcpy(raw, from, sizeof raw);
-        if (swapped()) std::reverse(raw, raw + sizeof raw);
-        return std::bit_cast<T>(raw);
-    }
-    template <class T>
-    T at(std::size_t offset) const {
-        return load<T>(&bytes[offset]);
-    }
-    // It begins with its own size, or with that of NIfTI-2.
-    int begins_with() const { return at<std::int32_t>(0); }
-    bool swapped() const {
-        std::int32_t raw;
-        std::memcpy(&raw, bytes.data(), sizeof raw);
-        return raw != 348 && raw != 540;
-    }
-    int dim(int i) const { return at<std::int16_t>(40 + 2 * i); }
-    int datatype() const { return at<std::int16_t>(70); }
-    float spacing(int i) const { return at<float>(76 + 4 * i); }
-    float data_offset() const { return std::max(at<float>(108), float(size)); }
-    bool has_quaternion() const { return at<std::int16_t>(252) > 0; }
-    bool has_matrix() const { return at<std::int16_t>(254) > 0; }
-    std::string_view magic() const { return {&bytes[344], 3}; }
+void refuse_truncated(double there, double promised, const std::filesystem::path& path) {
+    refuse(fmt::format("{:.0f} bytes of voxels where {:.0f} are promised (it is truncated)", there, promised),
+           path, "get the file again");
+}
+
+namespace {
+
+struct Format {
+    const char* ending;
+    Found (*look_through)(const std::filesystem::path&);
+};
+constexpr Format formats[] = {
+    {".nii", look_through_nifti}, {".nii.gz", look_through_nifti},  {".nrrd", look_through_nrrd},
+    {".nhdr", look_through_nrrd}, {".mha", look_through_metaimage}, {".mhd", look_through_metaimage},
 };
 
-// Bytes of a voxel of the NIfTI data types that are one real number (integers of 8 to 64 bits with and
-// without a sign, float and double); 0 for all others.
-std::size_t voxel_bytes(int datatype) {
-    constexpr std::pair<int, std::size_t> kinds[] = {{2, 1},   {256, 1}, {4, 2},    {512, 2},  {8, 4},
-                                                     {768, 4}, {16, 4},  {1024, 8}, {1280, 8}, {64, 8}};
-    for (auto [kind, bytes] : kinds)
-        if (kind == datatype) return bytes;
-    return 0;
+const Format* format_of(const std::filesystem::path& path) {
+    const std::string name = path.filename().string();
+    for (const Format& format : formats)
+        if (name.ends_with(format.ending)) return &format;
+    return nullptr;
 }
 
-// False for what no scanner writes. Where a matrix is not finite, ITK ends the whole program; where it is
-// subnormal, it complains aloud.
-bool sensible(float value) { return std::abs(value) < 1e9f && std::fpclassify(value) != FP_SUBNORMAL; }
-
-void check_format(const Header& header, const std::filesystem::path& path) {
-    if (header.begins_with() == 540) refuse("NIfTI-2", path, "convert it to NIfTI-1");
-    if (header.begins_with() != int(Header::size)) refuse("no NIfTI-1 header", path);
-    if (header.magic() == "ni1")
-        refuse("a NIfTI header apart from its data", path, "join them to one .nii file");
-    if (header.magic() != "n+1") refuse("no NIfTI-1 header", path);
+Volume read_anywhere(const std::filesystem::path& path) {
+    const Format* format = format_of(path);
+    if (format && std::filesystem::is_directory(path))
+        refuse("a folder where a file was expected", path, "name a file");
+    if (format) return read_with_itk(path, format->look_through(path));
+    if (is_volume(path)) return read_dicom(path);
+    if (std::filesystem::is_directory(path)) refuse("no DICOM file", path, "name another folder");
+    refuse("cannot read the volume format \"" + ending(path) + "\"", path,
+           "use .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd or a folder with a DICOM series");
 }
 
-void check_dimensions(const Header& header, const std::filesystem::path& path) {
-    const int dims = header.dim(0);
-    if (dims < 3 || dims > 7)
-        refuse(fmt::format("{} dimensions instead of three", dims), path, "give a volume");
-    for (int i = 1; i <= 3; ++i)
-        if (header.dim(i) < 1) refuse(fmt::format("a volume {} voxels wide", header.dim(i)), path);
-    if (dims >= 4 && header.dim(4) > 1)
-        refuse(fmt::format("{} time points", header.dim(4)), path, "split it and give one of them");
-    for (int i = 5; i <= dims; ++i)
-        if (header.dim(i) > 1) refuse("several values a voxel", path, "split it and give one of them");
-}
-
-void check_geometry(const Header& header, const std::filesystem::path& path) {
-    for (int i = 1; i <= 3; ++i)
-        if (!(header.spacing(i) > 1e-9f && sensible(header.spacing(i))))
-            refuse(fmt::format("voxels {} wide", header.spacing(i)), path);
-    const std::size_t from = header.has_quaternion() ? 256 : 280, to = header.has_matrix() ? 328 : 280;
-    for (std::size_t offset = from; offset < to; offset += 4)
-        if (!sensible(header.at<float>(offset))) refuse("an orientation that is not finite", path);
-}
-
-void check_data(const Header& header, const std::filesystem::path& path) {
-    if (!sensible(header.data_offset())) refuse("voxels that begin nowhere", path);
-    if (voxel_bytes(header.datatype()) == 0)
-        refuse(fmt::format("voxels of NIfTI's type {}, which are not real numbers", header.datatype()), path,
-               "convert them to numbers");
-    if (double(header.dim(1)) * header.dim(2) * header.dim(3) > most_voxels)
-        refuse(
-            fmt::format("{} x {} x {} voxels, more than 2^30", header.dim(1), header.dim(2), header.dim(3)),
-            path, "crop or shrink it");
-}
-
-// A gzip file as it comes out, or a plain file as it is.
-class Stream {
- public:
-    explicit Stream(const std::filesystem::path& path) : path_(path) {
-        if (std::filesystem::is_directory(path))
-            refuse("a folder where a file was expected", path, "name a file");
-        file_.reset(gzopen(path.c_str(), "rb"));
-        if (!file_) refuse("cannot open", path, "check the name and that it may be read");
-    }
-    // How many bytes could be read: less than `most` only at the end of the file.
-    std::size_t read(char* to, std::size_t most) {
-        const int count = gzread(file_.get(), to, unsigned(most));
-        int error;
-        gzerror(file_.get(), &error);
-        if (count < 0 || error != Z_OK) refuse("a truncated or damaged gzip", path_, "get the file again");
-        return std::size_t(count);
-    }
-
- private:
-    struct Close {
-        void operator()(gzFile file) const { gzclose(file); }
-    };
-    const std::filesystem::path& path_;
-    std::unique_ptr<gzFile_s, Close> file_;
-};
-
-Header read_header(Stream& stream, const std::filesystem::path& path) {
-    Header header;
-    if (stream.read(header.bytes.data(), Header::size) < Header::size) refuse("no NIfTI-1 header", path);
-    check_format(header, path);
-    check_dimensions(header, path);
-    check_geometry(header, path);
-    check_data(header, path);
-    return header;
-}
-
-// In the file's own byte order and kind; ITK would turn what is not finite into zeros.
-template <class T>
-void check_finite(const Header& header, const std::vector<char>& block, std::size_t bytes,
-                  std::uint64_t first, const std::filesystem::path& path) {
-    for (std::size_t i = 0; i + sizeof(T) <= bytes; i += sizeof(T))
-        if (!std::isfinite(header.load<T>(&block[i])))
-            refuse(fmt::format("voxel {} is not finite", (first + i) / sizeof(T)), path);
-}
-
-// Reads the voxels once, in small blocks, and on to the end of the file, where a gzip has its checksum.
-void check_voxels(Stream& stream, const Header& header, const std::filesystem::path& path) {
-    const double offset = header.data_offset();
-    const double promised =
-        double(header.dim(1)) * header.dim(2) * header.dim(3) * double(voxel_bytes(header.datatype()));
-    std::vector<char> block(1 << 16);
-    for (double gap = offset - double(Header::size); gap > 0;) {
-        const auto count = stream.read(block.data(), std::size_t(std::min(gap, double(block.size()))));
-        if (count == 0) break;
-        gap -= double(count);
-    }
-    std::uint64_t total = 0;
-    while (const std::size_t count = stream.read(block.data(), block.size())) {
-        const auto voxels = std::size_t(std::min(double(count), std::max(promised - double(total), 0.0)));
-        if (header.datatype() == 16) check_finite<float>(header, block, voxels, total, path);
-        if (header.datatype() == 64) check_finite<double>(header, block, voxels, total, path);
-        total += count;
-    }
-    if (!(promised <= double(total)))
-        refuse(fmt::format("{} bytes of voxels where {:.0f} are promised (it is truncated)", total, promised),
-               path, "get the file again");
-}
-
-template <class T>
-std::vector<float> floats(const std::vector<char>& buffer) {
-    const T* values = reinterpret_cast<const T*>(buffer.data());
-    return std::vector<float>(values, values + buffer.size() / sizeof(T));
-}
-
-std::vector<float> read_values(itk::NiftiImageIO& io, const std::filesystem::path& path) {
-    std::vector<char> buffer(std::size_t(io.GetImageSizeInBytes()));
-    io.Read(buffer.data());
-    using Type = itk::IOComponentEnum;
-    switch (io.GetComponentType()) {
-        case Type::UCHAR:
-            return floats<unsigned char>(buffer);
-        case Type::CHAR:
-            return floats<signed char>(buffer);
-        case Type::USHORT:
-            return floats<unsigned short>(buffer);
-        case Type::SHORT:
-            return floats<short>(buffer);
-        case Type::UINT:
-            return floats<unsigned int>(buffer);
-        case Type::INT:
-            return floats<int>(buffer);
-        case Type::ULONG:
-            return floats<unsigned long>(buffer);
-        case Type::LONG:
-            return floats<long>(buffer);
-        case Type::ULONGLONG:
-            return floats<unsigned long long>(buffer);
-        case Type::LONGLONG:
-            return floats<long long>(buffer);
-        case Type::FLOAT:
-            return floats<float>(buffer);
-        case Type::DOUBLE:
-            return floats<double>(buffer);
-        default:
-            refuse("voxels of an unknown type", path, "convert them to numbers");
-    }
-}
-
-// Spacing and origin in millimetres.
-Volume read_with_itk(const std::filesystem::path& path, const Header& header) {
-    auto io = itk::NiftiImageIO::New();
-    io->SetFileName(path.string());
-    io->ReadImageInformation();
-    Volume volume;
-    itk::ImageIORegion whole(3);
-    for (int i = 0; i < 3; ++i) {
-        whole.SetSize(i, io->GetDimensions(i));
-        volume.dims[i] = int(io->GetDimensions(i));
-        volume.spacing[i] = float(io->GetSpacing(i));
-        // Where the file is in other units, ITK turns its spacing into millimetres but forgets its origin.
-        volume.origin[i] = float(io->GetOrigin(i) * io->GetSpacing(i) / header.spacing(i + 1));
-        for (int row = 0; row < 3; ++row) volume.direction[i][row] = float(io->GetDirection(i)[row]);
-    }
-    io->SetIORegion(whole);
-    volume.values = read_values(*io, path);
-    return volume;
-}
-
-// While this lives, ITK keeps its warnings to itself: what matters to the user is said by our one line.
-struct Quiet {
-    bool before = itk::Object::GetGlobalWarningDisplay();
-    Quiet() { itk::Object::GlobalWarningDisplayOff(); }
-    ~Quiet() { itk::Object::SetGlobalWarningDisplay(before); }
-};
-
-// ITK's complaint without the place in its source that comes first.
-std::string complaint(const itk::ExceptionObject& error) {
-    const std::string text = error.GetDescription();
-    const std::size_t label = text.find("ERROR: ");
-    return label == std::string::npos ? text : text.substr(label + 7);
+void check_values(const Volume& volume, const std::filesystem::path& path) {
+    const auto bad = std::find_if_not(volume.values.begin(), volume.values.end(),
+                                      [](float value) { return std::isfinite(value); });
+    if (bad != volume.values.end())
+        refuse(fmt::format("voxel {} is not finite", bad - volume.values.begin()), path);
 }
 
 }  // namespace
 
 bool is_volume(const std::filesystem::path& path) {
-    const std::string name = path.filename().string();
-    return name.ends_with(".nii") || name.ends_with(".nii.gz");
+    return format_of(path) || path.extension() == ".dcm" || is_dicom(path);
 }
 
 Volume read_volume(const std::filesystem::path& path, Units units) {
-    if (!is_volume(path))
-        refuse("cannot read the volume format \"" + ending(path) + "\"", path, "use .nii or .nii.gz");
     try {
-        Stream stream(path);
-        const Header header = read_header(stream, path);
-        check_voxels(stream, header, path);
-        const Quiet quiet;
-        Volume volume = read_with_itk(path, header);
+        Volume volume = read_anywhere(path);
+        check_values(volume, path);
         volume.name = path.string();
-        for (std::size_t i = 0; i < volume.values.size(); ++i)
-            if (!std::isfinite(volume.values[i])) refuse(fmt::format("voxel {} is not finite", i), path);
         volume.spacing *= metres(units);
         volume.origin *= metres(units);
         return volume;
-    } catch (const itk::ExceptionObject& error) {
-        refuse("what ITK cannot read (" + complaint(error) + ")", path, "convert it with another program");
+    } catch (const std::filesystem::filesystem_error& error) {
+        refuse("cannot read (" + error.code().message() + ")", path,
+               "check the name and that it may be read");
     } catch (const std::bad_alloc&) {
         refuse("more than the memory can hold", path, "crop or shrink it");
     }

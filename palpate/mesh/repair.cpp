@@ -1,245 +1,257 @@
 #include "palpate/mesh/repair.h"
 
-#include "palpate/mesh/corners.h"
+#include "palpate/base/error.h"
+#include "palpate/mesh/intersections.h"
+#include "palpate/mesh/parts.h"
+#include "palpate/mesh/remake.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cstdint>
-#include <numeric>
-#include <unordered_map>
-#include <unordered_set>
-#include <vector>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace palpate {
 namespace {
 
-constexpr Index none = ~Index(0);
+// What was done so far. A step that is taken again adds to its count.
+struct Steps {
+    std::vector<Repair> done;
 
-// For each vertex, one vertex of its part that all of the part share.
-std::vector<Index> roots(const Mesh& mesh) {
-    std::vector<Index> parent(mesh.positions.size());
-    std::iota(parent.begin(), parent.end(), Index(0));
-    auto root = [&](Index v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];  // halves the way for those who come later
-        return v;
-    };
-    for (uvec3 t : mesh.triangles) {
-        parent[root(t.y)] = root(t.x);
-        parent[root(t.z)] = root(t.x);
-    }
-    for (Index v = 0; v < parent.size(); ++v) parent[v] = root(v);
-    return parent;
-}
-
-// How many faces each part has, at its root; zero elsewhere.
-std::vector<std::size_t> faces_by_root(const Mesh& mesh, const std::vector<Index>& root) {
-    std::vector<std::size_t> faces(mesh.positions.size());
-    for (uvec3 t : mesh.triangles) ++faces[root[t.x]];
-    return faces;
-}
-
-// Removes second copies of a face: the same three corners, turning the same way.
-void drop_copies(Mesh& mesh) {
-    for (uvec3& t : mesh.triangles)  // begin each at its lowest corner: then copies are equal
-        while (t.x > t.y || t.x > t.z) t = {t.y, t.z, t.x};
-    struct Hash {
-        std::size_t operator()(uvec3 t) const {
-            return ((std::uint64_t(t.x) << 32 | t.y) * 0x9e3779b97f4a7c15u ^ t.z) * 0xbf58476d1ce4e5b9u >> 16;
-        }
-    };
-    std::unordered_set<uvec3, Hash> seen(mesh.triangles.size());
-    std::erase_if(mesh.triangles, [&](uvec3 t) { return !seen.insert(t).second; });
-}
-
-struct HashPlace {
-    std::size_t operator()(dvec3 p) const {
-        std::size_t hash = 0;
-        for (int k = 0; k < 3; ++k)  // + 0.0 makes -0 and 0, which are equal, hash alike
-            hash = (hash ^ std::hash<double>()(p[k] + 0.0)) * 0x9e3779b97f4a7c15u;
-        return hash ^ (hash >> 32);
+    void add(const std::string& what, std::size_t count) {
+        if (count == 0) return;
+        const auto at =
+            std::find_if(done.begin(), done.end(), [&](const Repair& step) { return step.what == what; });
+        if (at == done.end())
+            done.push_back({what, count});
+        else
+            at->count += count;
     }
 };
 
-// The kept vertices, findable by place: in cells twice as wide as the tolerance, so that all that can be near
-// a point lies in at most eight of them, and mostly in a few. With no tolerance each place is its own cell.
-class Kept {
+// Brings a mesh that is very large or very small to about one metre, and back: by a power of two, which costs
+// no digits. So what is done in between may square lengths.
+class Handy {
  public:
-    Kept(const std::vector<vec3>& positions, float tolerance)
-        : positions_(positions), tolerance_(tolerance), below_(positions.size(), none) {
-        top_.reserve(positions.size());
+    explicit Handy(Mesh& mesh) : mesh_(mesh) {
+        float farthest = 0;
+        for (vec3 p : mesh.positions)
+            farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        const int power = farthest > 0 ? std::ilogb(farthest) : 0;
+        if (std::abs(power) <= 10) return;
+        power_ = power;
+        scale(-power_);
     }
+    ~Handy() { scale(power_); }
+    Handy(const Handy&) = delete;
+    Handy& operator=(const Handy&) = delete;
 
-    Index find(vec3 p) const {
-        const dvec3 low = cell(dvec3(p) - double(tolerance_)), high = cell(dvec3(p) + double(tolerance_));
-        const ivec3 last(glm::notEqual(low, high));
-        for (int z = 0; z <= last.z; ++z)
-            for (int y = 0; y <= last.y; ++y)
-                for (int x = 0; x <= last.x; ++x) {
-                    auto found = top_.find(glm::mix(low, high, glm::bvec3(x, y, z)));
-                    for (Index v = found == top_.end() ? none : found->second; v != none; v = below_[v])
-                        if (glm::distance(positions_[v], p) <= tolerance_) return v;
-                }
-        return none;
-    }
-
-    void add(Index v) {
-        Index& top = top_.try_emplace(cell(dvec3(positions_[v])), none).first->second;
-        below_[v] = top;
-        top = v;
-    }
+    float length(float metres) const { return std::ldexp(metres, -power_); }
+    double metres(double length) const { return std::ldexp(length, power_); }
 
  private:
-    dvec3 cell(dvec3 p) const { return tolerance_ > 0 ? glm::floor(p / (2.0 * tolerance_)) : p; }
-
-    const std::vector<vec3>& positions_;
-    float tolerance_;
-    std::unordered_map<dvec3, Index, HashPlace> top_;  // the last vertex added to each cell
-    std::vector<Index> below_;                         // the one added to the same cell before
-};
-
-// The vertices that each vertex moves towards: all its neighbours, or at an open border only those along the
-// border, so that the border is smoothed as a line and does not creep inwards.
-struct Neighbours {
-    std::vector<Index> first, vertices;
-};
-
-Neighbours neighbours(const Mesh& mesh) {
-    const Corners corners(mesh);
-    Neighbours result;
-    result.first.reserve(mesh.positions.size() + 1);
-    result.vertices.reserve(3 * mesh.triangles.size());
-    std::vector<Index> around, inner, border;
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        around.clear(), inner.clear(), border.clear();
-        for (Index c : corners.at(v)) {
-            around.push_back(corners.vertex(Corners::next(c)));
-            around.push_back(corners.vertex(Corners::previous(c)));
-        }
-        std::sort(around.begin(), around.end());
-        for (auto at = around.begin(); at != around.end();) {
-            auto end = std::upper_bound(at, around.end(), *at);
-            (end - at == 1 ? border : inner).push_back(*at);  // a border's edge has one face
-            at = end;
-        }
-        const std::vector<Index>& chosen = border.empty() ? inner : border;
-        result.first.push_back(Index(result.vertices.size()));
-        result.vertices.insert(result.vertices.end(), chosen.begin(), chosen.end());
+    void scale(int power) {
+        if (power == 0) return;
+        for (vec3& p : mesh_.positions)
+            p = {std::ldexp(p.x, power), std::ldexp(p.y, power), std::ldexp(p.z, power)};
     }
-    result.first.push_back(Index(result.vertices.size()));
-    return result;
+
+    Mesh& mesh_;
+    int power_ = 0;
+};
+
+void check_finite(const Mesh& mesh, const std::string& name) {
+    for (vec3 p : mesh.positions)
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            throw Error("a position that is not finite", name, "mend it where it was made");
 }
 
-// Moves every vertex by `step` of the way to the mean of its neighbours.
-void move_to_mean(const Neighbours& near, float step, const std::vector<vec3>& from, std::vector<vec3>& to) {
-    for (std::size_t v = 0; v < from.size(); ++v) {
-        vec3 sum(0);
-        const Index first = near.first[v], last = near.first[v + 1];
-        for (Index i = first; i < last; ++i) sum += from[near.vertices[i]];
-        to[v] = first == last ? from[v] : from[v] + step * (sum / float(last - first) - from[v]);
+bool is_closed(const Mesh& mesh) {
+    bool closed = true;
+    for_each_edge(Corners(mesh), [&](Index low, std::span<const Side> sides) {
+        closed &= sides.size() == 2 && sides[0].up != sides[1].up && sides[0].other != low;
+    });
+    return closed;
+}
+
+bool is_open(const Mesh& mesh) {
+    bool open = false;
+    for_each_edge(Corners(mesh), [&](Index, std::span<const Side> sides) { open |= sides.size() == 1; });
+    return open;
+}
+
+float longest_side(const Mesh& mesh) {
+    const vec3 size = bounds(mesh).size();
+    return std::max({size.x, size.y, size.z});
+}
+
+// Where a few faces lie back to back, both go. Where most do, the surface was written from both sides, and
+// one of each two stays.
+void drop_backs(Mesh& mesh, Steps& steps) {
+    Mesh without{mesh.positions, {}, mesh.triangles};
+    const std::size_t flaps = drop_flaps(without);
+    if (2 * flaps < mesh.triangles.size()) {
+        mesh.triangles = std::move(without.triangles);
+        steps.add("faces dropped that lay back to back", flaps);
     }
+    steps.add("copies of faces dropped", drop_copies(mesh));
+}
+
+// What no one misses: what is there twice, or not really there, or too small.
+void clean(Mesh& mesh, const RepairSettings& settings, float tolerance, Steps& steps) {
+    constexpr float seam = 1e-5f;  // of the longest side
+    std::size_t welded = 0;
+    if (tolerance > 0 || is_open(mesh)) welded = weld(mesh, tolerance);
+    std::size_t collapsed = drop_collapsed(mesh);
+    if (tolerance == 0 && is_open(mesh)) {
+        welded += weld_border(mesh, seam * longest_side(mesh));
+        collapsed += drop_collapsed(mesh);
+    }
+    steps.add("vertices welded", welded);
+    steps.add("collapsed or double faces dropped", collapsed);
+    drop_backs(mesh, steps);
+    steps.add("specks dropped", drop_specks(mesh, settings.specks));
+    if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh));
+    steps.add("faces without an area removed", drop_flat_faces(mesh));
+    steps.add("faces turned to agree with their neighbours", turn_faces(mesh));
+}
+
+// Drops parts that enclose next to nothing. `closing`: from here on, faces were put in to close holes. What
+// needed a great lid and still encloses little was meant as a sheet.
+std::size_t drop_sheets(Mesh& mesh, std::size_t closing) {
+    const Parts part = parts(mesh);
+    std::vector<double> area(part.count), lid(part.count);
+    for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+        const uvec3 t = mesh.triangles[face];
+        const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+        const double own = 0.5 * glm::length(glm::cross(b - a, c - a));
+        area[part.of[face]] += own;
+        if (face >= closing) lid[part.of[face]] += own;
+    }
+    const std::vector<double> volume = volumes(mesh, part);
+    std::vector<char> keep;
+    for (Index i = 0; i < part.count; ++i) {
+        const double roundness = std::abs(volume[i]) / std::pow(area[i], 1.5);  // of a ball 0.094
+        keep.push_back(roundness > (lid[i] > 0.25 * area[i] ? 1e-3 : 1e-6));
+    }
+    return keep_parts(mesh, part, keep);
+}
+
+Error no_inside(const RepairSettings& settings) {
+    return Error("no inside", settings.name, "give it a thickness, or use it as a cloth (sheet = true)");
+}
+
+// A Möbius band, not a bottle with a hole: one side only, and more border than face.
+bool is_one_sided_sheet(const Mesh& mesh) {
+    if (one_sided_parts(mesh) == 0) return false;
+    double area = 0;
+    for (uvec3 t : mesh.triangles) {
+        const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+        area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    const double border = soundness(mesh).longest_hole;
+    return border * border / (4 * std::numbers::pi) > 0.25 * area;  // a disc of this border
+}
+
+// Leaves of closed parts those that part inside from outside, and what is large enough.
+void settle(Mesh& mesh, const RepairSettings& settings, Steps& steps) {
+    steps.add("faces without an area removed", drop_flat_faces(mesh));
+    steps.add("sheets dropped that enclose nothing", drop_sheets(mesh, mesh.triangles.size()));
+    steps.add("specks dropped", drop_specks(mesh, settings.specks));
+    if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh));
+    steps.add("parts turned right way out", turn_parts(mesh));
+    steps.add("parts dropped that lay inside another", drop_nested(mesh));
+    drop_unused(mesh);
+}
+
+// Makes a solid of the mesh's own faces. Returns why that failed, or nothing.
+std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps) {
+    if (const std::size_t parts = one_sided_parts(mesh); parts > 0)
+        return fmt::format("{} part{} one side only", parts, parts == 1 ? " has" : "s have");
+    const std::size_t closing = mesh.triangles.size();
+    steps.add("holes closed", close_holes(mesh));
+    steps.add("sheets dropped that enclose nothing", drop_sheets(mesh, closing));
+    steps.add("faces dropped that lay back to back", drop_flaps(mesh));
+    steps.add("vertices added to part what only touches", part_sheets(mesh));
+    settle(mesh, settings, steps);
+    if (const Intersections cuts = intersections(mesh); !cuts.faces.empty()) {
+        const std::size_t mended = mend_intersections(mesh, cuts);
+        if (mended == 0)
+            return fmt::format("{}{} pairs of faces cut through each other", cuts.all ? "" : "over ",
+                               cuts.faces.size());
+        steps.add("faces replaced that cut through each other", mended);
+        settle(mesh, settings, steps);
+    }
+    if (const std::size_t crossing = nesting(mesh).crossing; crossing > 0)
+        return fmt::format("{} parts lie partly inside others", crossing);
+    if (!is_closed(mesh)) return "some of its holes cannot be closed";
+    if (!(volume(mesh) > 0)) return "its walls enclose nothing";
+    return {};
+}
+
+// Brings what voxels made to about as many faces as there were before, or to as few as can be had without
+// cutting through each other.
+void simplify(Mesh& solid, std::size_t faces) {
+    constexpr std::size_t fewest = 2000;
+    for (std::size_t wanted = std::max(faces, fewest);; wanted *= 2) {
+        Mesh simple = solid;
+        decimate(simple, wanted);
+        part_sheets(simple);
+        const Intersections cuts = intersections(simple);
+        if (cuts.faces.empty() || mend_intersections(simple, cuts) > 0 || wanted > solid.triangles.size()) {
+            solid = std::move(simple);
+            return;
+        }
+    }
+}
+
+void make_by_voxels(Mesh& mesh, const RepairSettings& settings, float voxel, const std::string& why,
+                    const Progress& progress, Steps& steps) {
+    steps.add("parts turned right way out", turn_parts(mesh));
+    Mesh solid = remake(mesh, voxel, settings.name, progress);
+    simplify(solid, mesh.triangles.size());
+    Steps unsaid;
+    settle(solid, settings, unsaid);
+    if (!is_closed(solid) || !(volume(solid) > 0)) throw no_inside(settings);
+    mesh = std::move(solid);
+    steps.add("faces made by voxels, because " + why, mesh.triangles.size());
 }
 
 }  // namespace
 
-std::size_t weld(Mesh& mesh, float tolerance) {
-    assert(tolerance >= 0);
-    Kept kept(mesh.positions, tolerance);
-    std::vector<Index> place(mesh.positions.size());
-    Index count = 0;
-    for (std::size_t v = 0; v < place.size(); ++v) {
-        place[v] = kept.find(mesh.positions[v]);
-        if (place[v] != none) continue;
-        mesh.positions[count] = mesh.positions[v];
-        kept.add(count);
-        place[v] = count++;
-    }
-    const std::size_t went = place.size() - count;
-    if (went == 0) return 0;
-    mesh.positions.resize(count);
-    mesh.normals.clear();
-    for (uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
-    return went;
+std::span<const Named<SolidBy>> names(SolidBy) {
+    static constexpr Named<SolidBy> all[] = {{SolidBy::walls, "walls"}, {SolidBy::voxels, "voxels"}};
+    return all;
 }
 
-std::size_t drop_unused(Mesh& mesh) {
-    std::vector<Index> place(mesh.positions.size(), none);
-    for (uvec3 t : mesh.triangles) place[t.x] = place[t.y] = place[t.z] = 0;
-    Index used = 0;
-    for (std::size_t v = 0; v < place.size(); ++v) {
-        if (place[v] == none) continue;
-        mesh.positions[used] = mesh.positions[v];
-        place[v] = used++;
-    }
-    const std::size_t went = place.size() - used;
-    if (went == 0) return 0;
-    mesh.positions.resize(used);
-    mesh.normals.clear();
-    for (uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
-    return went;
-}
-
-std::size_t drop_collapsed(Mesh& mesh) {
-    const std::size_t before = mesh.triangles.size();
-    std::erase_if(mesh.triangles, [](uvec3 t) { return t.x == t.y || t.y == t.z || t.z == t.x; });
-    drop_copies(mesh);
-    drop_unused(mesh);
-    return before - mesh.triangles.size();
-}
-
-std::size_t keep_largest(Mesh& mesh) {
-    if (mesh.triangles.empty()) return 0;
-    const std::vector<Index> root = roots(mesh);
-    const std::vector<std::size_t> faces = faces_by_root(mesh, root);
-    const auto largest = Index(std::max_element(faces.begin(), faces.end()) - faces.begin());
-    std::erase_if(mesh.triangles, [&](uvec3 t) { return root[t.x] != largest; });
-    drop_unused(mesh);
-    return std::count_if(faces.begin(), faces.end(), [](std::size_t n) { return n > 0; }) - 1;
-}
-
-void smooth(Mesh& mesh, int passes) {
-    // Taubin's pair: what the first step shrinks, the second grows back, all but the ripples of a few edges'
-    // length. They cross at a spatial frequency of 1/0.5 - 1/0.53 = 0.11, near the 0.1 that he advises.
-    constexpr float shrink = 0.5f, grow = -0.53f;
-    if (passes <= 0) return;
-    const Neighbours near = neighbours(mesh);
-    std::vector<vec3> moved(mesh.positions.size());
-    for (int pass = 0; pass < passes; ++pass) {
-        move_to_mean(near, shrink, mesh.positions, moved);
-        move_to_mean(near, grow, moved, mesh.positions);
-    }
-    mesh.normals.clear();
-}
-
-Soundness soundness(const Mesh& mesh) {
-    Soundness found;
-    for (std::size_t faces : faces_by_root(mesh, roots(mesh))) found.parts += faces > 0;
-
-    // Each edge is looked at from its lower end, where its faces run out along it or come in.
-    struct Side {
-        Index other;
-        int out, in;
+std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Progress& progress) {
+    check_finite(mesh, settings.name);
+    const Handy handy(mesh);
+    auto tell = [&](std::string_view doing, double done) {
+        if (progress) progress(doing, done);
     };
-    const Corners corners(mesh);
-    std::vector<Side> sides;
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        sides.clear();
-        for (Index c : corners.at(v)) {
-            sides.push_back({corners.vertex(Corners::next(c)), 1, 0});
-            sides.push_back({corners.vertex(Corners::previous(c)), 0, 1});
-        }
-        std::erase_if(sides, [&](Side side) { return side.other < v; });
-        std::sort(sides.begin(), sides.end(), [](Side a, Side b) { return a.other < b.other; });
-        for (std::size_t i = 0; i < sides.size();) {
-            Side edge = sides[i];
-            for (++i; i < sides.size() && sides[i].other == edge.other; ++i)
-                edge.out += sides[i].out, edge.in += sides[i].in;
-            if (edge.out + edge.in == 1)
-                ++found.open_edges;
-            else if (edge.out != 1 || edge.in != 1 || edge.other == v)
-                ++found.bad_edges;
+    Steps steps;
+    tell("cleaning the surface", 0);
+    clean(mesh, settings, handy.length(settings.weld), steps);
+    if (settings.sheet) {
+        if (mesh.triangles.empty()) throw Error("no face with an area", settings.name, "look at the file");
+        return steps.done;
+    }
+    if (is_one_sided_sheet(mesh)) throw no_inside(settings);
+    std::string why = "so it was asked";
+    if (settings.solid == SolidBy::walls) {
+        tell("mending the walls", 0.2);
+        Mesh walls = mesh;
+        Steps more = steps;
+        why = mend_walls(walls, settings, more);
+        if (why.empty()) {
+            mesh = std::move(walls);
+            return more.done;
         }
     }
-    return found;
+    tell("making a solid by voxels", 0.5);
+    make_by_voxels(mesh, settings, handy.length(settings.voxel), why, progress, steps);
+    return steps.done;
 }
 
 }  // namespace palpate

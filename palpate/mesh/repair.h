@@ -1,22 +1,79 @@
 #pragma once
+#include "palpate/base/progress.h"
 #include "palpate/mesh/mesh.h"
+#include "palpate/mesh/soundness.h"
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 namespace palpate {
 
-// Each step changes the mesh in place, drops its normals if positions or vertices change, and returns a count
-// for the report. None of them ever makes a position that is not finite.
+// ---- all of it ----
+
+/// How a surface becomes a solid: its own faces are mended, and where that fails voxels make a new surface
+/// (walls); or voxels do so at once.
+enum class SolidBy { walls, voxels };
+
+/// Their names: walls, voxels.
+std::span<const Named<SolidBy>> names(SolidBy);
+
+struct RepairSettings {
+    float weld = 0;        // m; vertices no farther apart become one. 0: those in one place and, where
+                           // the mesh is open, those of the border within 1e-5 of its longest side
+    float specks = 0.01f;  // parts shorter than this fraction of the longest part go; 0 keeps all
+    bool largest = false;  // keep only the part with the most faces
+    bool sheet = false;    // a cloth: may stay open, is neither closed nor made by voxels
+    SolidBy solid = SolidBy::walls;  // ignored for a sheet
+    float voxel = 0;                 // m; for what voxels make. 0: 1/200 of the longest side
+    std::string name = "the mesh";   // what errors call it
+};
+
+/// One step that changed the mesh: {"vertices welded", 214}.
+struct Repair {
+    std::string what;
+    std::size_t count = 0;
+};
+
+/// Makes a sound solid of any triangles: finite, every edge with two faces that run along it in opposite
+/// ways, and a volume above zero. Returns what changed, in order; a sound mesh stays as it is, to the bit.
+/// Where the walls could not be mended, the step "made by voxels of 0.005 m, because of …" says why; the
+/// count is of whatever made it fail. Where the mesh is already closed, vertices that share a place are not
+/// welded: they hold apart what would else touch. Drops normals, texture coordinates and tangents of a mesh
+/// it changes. Throws Error if a position is not finite or nothing encloses a volume: a sheet, a line, a
+/// point, a Möbius band. Positions may be of any size, 1e-20 m as well as 1e30 m.
+std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings = {}, const Progress& progress = {});
+
+// ---- its steps ----
+
+// Each step changes the mesh in place, drops its normals, texture coordinates and tangents if positions or
+// vertices change, and returns a count for the report. None of them ever makes a position that is not finite.
 
 /// Makes one vertex of all that lie at the same place; returns how many vertices went.
 /// `tolerance` (m): a vertex no farther than this from one before it becomes that one; 0 welds only equal
 /// positions.
 std::size_t weld(Mesh& mesh, float tolerance = 0);
 
+/// The same for the vertices of open edges only: closes seams and leaves all else alone.
+std::size_t weld_border(Mesh& mesh, float tolerance);
+
 /// Drops faces with two equal corners, second copies of the same face, and vertices no face uses; returns how
 /// many faces went. Weld first: then what lies in one place is equal. A face whose three corners merely lie
 /// in a line stays, because it holds its neighbours together: so a closed mesh stays closed.
 std::size_t drop_collapsed(Mesh& mesh);
+
+/// Drops all but the first of the faces that have the same three corners, whichever way they turn; returns
+/// how many went.
+std::size_t drop_copies(Mesh& mesh);
+
+/// Drops each face together with one that lies on its back: the same corners, turning the other way. A closed
+/// mesh stays closed. Returns how many went.
+std::size_t drop_flaps(Mesh& mesh);
+
+/// Removes faces without an area: of a needle the short edge is collapsed, of a cap the long edge flipped, so
+/// a closed mesh stays closed. Returns how many went; where neither can be done without harm the face stays,
+/// as may the middle of a long row of them.
+std::size_t drop_flat_faces(Mesh& mesh);
 
 /// Drops vertices no face uses; returns how many went.
 std::size_t drop_unused(Mesh& mesh);
@@ -24,21 +81,38 @@ std::size_t drop_unused(Mesh& mesh);
 /// Keeps the connected part with the most faces; returns how many other parts went.
 std::size_t keep_largest(Mesh& mesh);
 
+/// Drops the parts whose box's longest side is less than `fraction` of that of the longest part; returns how
+/// many parts went.
+std::size_t drop_specks(Mesh& mesh, float fraction);
+
+/// Turns faces over until, within each part, neighbours turn the same way: as most of the part did. Returns
+/// how many were turned. A part with one side only, such as a Möbius band, keeps a seam of bad edges.
+std::size_t turn_faces(Mesh& mesh);
+
+/// Turns over each part whose volume is negative, but for cavities: parts inside another that turn the other
+/// way. Returns how many parts were turned.
+std::size_t turn_parts(Mesh& mesh);
+
+/// Drops the parts that lie inside another and are no cavity of it, so that what is left parts inside from
+/// outside. Returns how many went. Turn parts first.
+std::size_t drop_nested(Mesh& mesh);
+
+/// Closes each loop of open edges with new faces between its vertices; returns how many loops. All edges then
+/// have as many faces one way as the other, if neighbours turned the same way before.
+std::size_t close_holes(Mesh& mesh);
+
+/// Parts what only touches. Where an edge has more than two faces, those that bound the same matter stay
+/// together; where several sheets share but a vertex, each gets its own. Returns how many vertices were
+/// added: at the places of the old, or where that does not part them in the middles of edges.
+std::size_t part_sheets(Mesh& mesh);
+
 /// Taubin's smoothing: `passes` pairs of a shrinking and a growing step, so that the volume stays within a
 /// percent or two. Removes the staircase that a voxel grid leaves on an isosurface.
 void smooth(Mesh& mesh, int passes);
 
 /// Simplifies to about `faces` faces by collapsing edges where it shows least (quadric error); returns how
 /// many faces went. Leaves a mesh that has fewer already as it is. A closed mesh stays closed. A part that
-/// hung on by a single vertex may come loose: keep_largest afterwards drops it.
+/// hung on by a single vertex comes loose: keep_largest afterwards drops it.
 std::size_t decimate(Mesh& mesh, std::size_t faces);
-
-/// What a look at a mesh finds. A closed mesh has open_edges = 0 and bad_edges = 0.
-struct Soundness {
-    std::size_t parts = 0;       // connected parts
-    std::size_t open_edges = 0;  // edges with one face
-    std::size_t bad_edges = 0;   // edges with more than two faces, or two that run the same way
-};
-Soundness soundness(const Mesh& mesh);
 
 }  // namespace palpate

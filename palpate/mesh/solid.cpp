@@ -5,47 +5,15 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/Dense.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/MeshToVolume.h>
-#include <openvdb/tools/VolumeToMesh.h>
 
-#include <algorithm>
 #include <cassert>
-#include <utility>
 
 namespace palpate {
 namespace {
 
 using openvdb::FloatGrid;
-
-// The volume as OpenVDB wants it: inside is what lies below zero, and all beyond the volume is as far outside
-// as its lowest voxel. Scaled to within -1 and 1, so that no difference of two is too large for a float.
-FloatGrid::Ptr inside_below_zero(const Volume& volume, float iso, float lowest, float highest) {
-    const double scale = 1 / std::max(double(iso) - lowest, double(highest) - iso);
-    auto scaled = [&](float value) { return float((double(iso) - value) * scale); };
-    std::vector<float> values(volume.values.size());
-    std::transform(volume.values.begin(), volume.values.end(), values.begin(), scaled);
-
-    using openvdb::Coord;
-    const ivec3 last = volume.dims - 1;
-    const openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> dense(
-        openvdb::CoordBBox(Coord(0), Coord(last.x, last.y, last.z)), values.data());
-    auto grid = FloatGrid::create(scaled(lowest));
-    openvdb::tools::copyFromDense(dense, grid->tree(), 0.0f);
-    return grid;
-}
-
-// Cuts a quad along its shorter diagonal. Each diagonal joins two cells that no other quad joins, so the
-// surface stays as sound as the quads were.
-void add_quad(Mesh& mesh, openvdb::Vec4I q, bool turn_over) {
-    if (turn_over) std::swap(q[1], q[3]);
-    auto length = [&](int i, int j) { return glm::distance(mesh.positions[q[i]], mesh.positions[q[j]]); };
-    const int first = length(0, 2) <= length(1, 3) ? 0 : 1;
-    auto corner = [&](int i) { return q[(first + i) % 4]; };
-    mesh.triangles.push_back({corner(0), corner(1), corner(2)});
-    mesh.triangles.push_back({corner(0), corner(2), corner(3)});
-}
 
 // How many voxels to either side have a distance of their own: OpenVDB's default.
 constexpr float band = 3;
@@ -75,29 +43,6 @@ bool is_open(Mesh mesh) {
 }
 
 }  // namespace
-
-Mesh isosurface(const Volume& volume, float iso) {
-    assert(volume.count() > 0 && volume.values.size() == volume.count());
-    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
-    if (!(*low < iso && iso < *high))
-        throw Error(fmt::format("no surface at the value {} (its voxels hold {} to {})", iso, *low, *high),
-                    volume.name, "choose an iso value between these");
-
-    openvdb::initialize();
-    std::vector<openvdb::Vec3s> points;
-    std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(*inside_below_zero(volume, iso, *low, *high), points, quads, 0.0);
-
-    Mesh mesh;
-    mesh.positions.reserve(points.size());
-    for (const auto& p : points)
-        mesh.positions.push_back(volume.origin +
-                                 volume.direction * (volume.spacing * vec3(p.x(), p.y(), p.z())));
-    mesh.triangles.reserve(2 * quads.size());
-    const bool mirrored = glm::determinant(volume.direction) < 0;
-    for (const auto& quad : quads) add_quad(mesh, quad, mirrored);
-    return mesh;
-}
 
 // In units of a voxel, from near the mesh's lowest corner: so small units and places far off cost no digits.
 struct SignedDistance::Grid {

@@ -1,17 +1,10 @@
 #pragma once
 #include "palpate/mesh/mesh.h"
-#include "palpate/mesh/volume.h"
 
 #include <memory>
 #include <vector>
 
 namespace palpate {
-
-/// The surface where the volume's value is `iso`: the inside is above it. Outside the volume counts as below,
-/// so that the surface is closed where the volume is cut. In the world's coordinates, metres; welded. A
-/// half-integer `iso` keeps the surface of an integer volume off the voxels themselves. Throws Error, naming
-/// the range of values, if no voxel is above `iso` or none below.
-Mesh isosurface(const Volume& volume, float iso);
 
 /// Signed distance from a closed mesh, negative inside, exact near the surface and cut off three voxels away
 /// from it. What cannot be reached from outside is inside, whichever way the faces turn. So holes smaller

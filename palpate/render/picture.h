@@ -7,6 +7,7 @@
 
 namespace palpate {
 
+/// What a surface looks like.
 struct Look {
     vec3 colour = vec3(0.8f, 0.42f, 0.38f);  // linear red, green and blue, 0 to 1; living tissue by default
     float shine = 0.6f;                      // 0 as dull as chalk, 1 as wet as an eye

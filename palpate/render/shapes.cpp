@@ -1,6 +1,6 @@
 #include "palpate/render/shapes.h"
 
-#include "palpate/mesh/solid.h"
+#include "palpate/mesh/isosurface.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,6 @@
 #include "palpate/run/film.h"
 
 #include "palpate/base/error.h"
-#include "palpate/base/files.h"
 
 #include <fmt/format.h>
 
@@ -32,25 +31,13 @@ std::vector<std::string> command(const std::filesystem::path& path, int width, i
 }  // namespace
 
 Film::Film(const std::filesystem::path& path, int width, int height, int frames_per_second)
-    : path_(path),
-      unfinished_(temporary_beside(path)),
-      ffmpeg_(std::make_unique<Pipe>(command(unfinished_, width, height, frames_per_second))) {}
+    : file_(path), ffmpeg_(command(file_.name(), width, height, frames_per_second)) {}
 
-Film::~Film() {
-    ffmpeg_.reset();  // ffmpeg must have ended before its file goes
-    std::error_code ignored;
-    std::filesystem::remove(unfinished_, ignored);
-}
-
-void Film::add(const Image& image) { ffmpeg_->write(image.pixels.data(), image.pixels.size()); }
+void Film::add(const Image& image) { ffmpeg_.write(image.pixels.data(), image.pixels.size()); }
 
 void Film::finish() {
-    ffmpeg_->finish();
-    std::error_code error;
-    std::filesystem::rename(unfinished_, path_, error);
-    if (error)
-        throw Error("cannot write (" + error.message() + ")", path_.string(),
-                    "check that no folder has this name");
+    ffmpeg_.finish();
+    file_.finish();
 }
 
 }  // namespace palpate

@@ -1,9 +1,9 @@
 #pragma once
+#include "palpate/base/files.h"
 #include "palpate/base/pipe.h"
 #include "palpate/mesh/image.h"
 
 #include <filesystem>
-#include <memory>
 
 namespace palpate {
 
@@ -13,16 +13,13 @@ class Film {
  public:
     /// Throws Error if ffmpeg is not installed.
     Film(const std::filesystem::path& path, int width, int height, int frames_per_second);
-    ~Film();
-    Film(const Film&) = delete;
-    Film& operator=(const Film&) = delete;
 
     void add(const Image& image);
     void finish();
 
  private:
-    std::filesystem::path path_, unfinished_;
-    std::unique_ptr<Pipe> ffmpeg_;
+    Unfinished file_;
+    Pipe ffmpeg_;  // ends before its file goes
 };
 
 }  // namespace palpate

@@ -9,6 +9,7 @@ namespace palpate {
 /// What a run did: docs/report.md describes the file, whose keys are these names with their units behind
 /// them.
 struct Report {
+    /// Of one body.
     struct Body {
         std::string name;
         std::size_t nodes = 0, pinned = 0, springs = 0, cells = 0, vertices = 0, faces = 0;
@@ -22,6 +23,7 @@ struct Report {
         double largest_speed = 0;        // m/s, at the end of any frame
         std::size_t inverted_cells = 0;  // at the end of the worst frame
     };
+    /// Of one tool.
     struct Tool {
         std::string name;
         double largest_force = 0;  // N
@@ -31,6 +33,7 @@ struct Report {
         std::vector<double> force;        // N, mean over the frame
         std::vector<double> indentation;  // m, at the end of the frame
     };
+    /// Of work, by its kind.
     struct Seconds {
         double build = 0, simulate = 0, map = 0, render = 0, total = 0;
     };

@@ -3,6 +3,7 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
+#include "palpate/mesh/sequence.h"
 #include "palpate/mesh/write.h"
 #include "palpate/run/play.h"
 #include "palpate/run/plot.h"
@@ -33,17 +34,54 @@ void write_nodes(const std::vector<Model>& models, const std::vector<State>& sta
     write_text(path, text);
 }
 
+// The file of one body: where there are several, its name is in the file's.
+std::filesystem::path file_of(std::size_t body, const std::vector<Model>& models,
+                              std::filesystem::path path) {
+    if (models.size() > 1)
+        path.replace_filename(path.stem().string() + "-" + models[body].body.name +
+                              path.extension().string());
+    return path;
+}
+
 void write_surfaces(const std::vector<Model>& models, const std::vector<Skin>& skins,
                     const std::filesystem::path& path) {
-    for (std::size_t m = 0; m < models.size(); ++m) {
-        const Mesh mesh{skins[m].positions, skins[m].normals, models[m].surface.triangles};
-        std::filesystem::path file = path;
-        if (models.size() > 1)
-            file.replace_filename(path.stem().string() + "-" + models[m].body.name +
-                                  path.extension().string());
-        write_mesh(mesh, file);
-    }
+    for (std::size_t m = 0; m < models.size(); ++m)
+        write_mesh({skins[m].positions, skins[m].normals, models[m].surface.triangles},
+                   file_of(m, models, path));
 }
+
+// ---- what is written on the way ----
+
+// The surfaces as they move, each in a sequence of its own.
+class Recording {
+ public:
+    Recording(const RunSettings& settings, const Models& made, const Play& play, double duration) {
+        if (settings.sequence.empty()) return;
+        frames_apart_ = int(std::lround(std::clamp(settings.sequence_every / frame_seconds, 1.0, 1e9)));
+        const auto frames = std::size_t(std::ceil(duration / frame_seconds - 1e-6));
+        for (std::size_t m = 0; m < made.models.size(); ++m) {
+            const Mesh& rest = made.models[m].surface;
+            sequences_.push_back(make_sequence({rest.positions, play.skins()[m].normals, rest.triangles},
+                                               file_of(m, made.models, settings.sequence),
+                                               frames / std::size_t(frames_apart_) + 1));
+        }
+    }
+
+    // Frame 0 is the state before the first step.
+    void frame_done(int number, double time, const Play& play) {
+        if (number % frames_apart_ != 0) return;
+        for (std::size_t m = 0; m < sequences_.size(); ++m)
+            sequences_[m]->add(time, play.skins()[m].positions, play.skins()[m].normals);
+    }
+
+    void finish() {
+        for (const auto& sequence : sequences_) sequence->finish();
+    }
+
+ private:
+    int frames_apart_ = 1;
+    std::vector<std::unique_ptr<Sequence>> sequences_;
+};
 
 // ---- rest ----
 
@@ -113,13 +151,14 @@ double longest(const Scene& scene, const RunSettings& settings, const Play& play
 
 // Says before the work what could not be written after it.
 void check_outputs(const RunSettings& settings) {
-    for (const auto* file :
-         {&settings.video, &settings.report, &settings.plot, &settings.nodes, &settings.surface}) {
+    for (const auto* file : {&settings.video, &settings.report, &settings.plot, &settings.nodes,
+                             &settings.surface, &settings.sequence}) {
         if (file->has_parent_path()) make_folder(file->parent_path());
         if (std::error_code error; std::filesystem::is_directory(*file, error))
             throw Error("a folder where a file is to be written", file->string(), "name a file");
     }
     if (!settings.surface.empty()) check_mesh_name(settings.surface);
+    if (!settings.sequence.empty()) check_sequence_name(settings.sequence);
 }
 
 }  // namespace
@@ -140,13 +179,15 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         show = std::make_unique<Show>(scene, made, settings);
         report.renderer = show->renderer();
     }
+    const double duration = longest(scene, settings, play);
+    Recording recording(settings, made, play, duration);
     report.seconds.build = now() - start;
 
-    const double duration = longest(scene, settings, play);
     RestWatch watch(settings.until_rest, scene, made);
     auto draw = [&] {
         Timed timed(report.seconds.render);
         if (show) report.pictures += show->frame_done(report.frames, play);
+        recording.frame_done(report.frames, report.simulated, play);
     };
     draw();
     while (report.simulated < duration - 1e-9 && !report.rest) {
@@ -164,6 +205,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     if (settings.until_rest != Rest::none && !report.rest && !report.diverged)
         report.notes.push_back(fmt::format("not at rest after {:.4g} s", report.simulated));
     if (show) show->finish();
+    recording.finish();
 
     for (const Report::Body& body : report.bodies)
         if (body.inverted_cells > 0)

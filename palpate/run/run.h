@@ -33,16 +33,18 @@ struct RunSettings {
     /// above, after ten times the scene's duration at the latest.
     Rest until_rest = Rest::none;
 
-    std::filesystem::path video;    // MP4, 30 pictures a second
-    std::filesystem::path images;   // a folder of PNG pictures
-    std::filesystem::path report;   // JSON
-    std::filesystem::path plot;     // SVG: contact force and indentation over time
-    std::filesystem::path nodes;    // CSV of the final state: body,id,x,y,z,vx,vy,vz
-    std::filesystem::path surface;  // PLY or OBJ of the final surface; with several bodies NAME-BODY.ply
+    std::filesystem::path video;     // MP4, 30 pictures a second
+    std::filesystem::path images;    // a folder of PNG pictures
+    std::filesystem::path report;    // JSON
+    std::filesystem::path plot;      // SVG: contact force and indentation over time
+    std::filesystem::path nodes;     // CSV of the final state: body,id,x,y,z,vx,vy,vz
+    std::filesystem::path surface;   // the final surface, see write_mesh; with several bodies NAME-BODY.ply
+    std::filesystem::path sequence;  // the surface as it moves, see make_sequence; likewise
 
-    double image_every = 1;          // s
-    int width = 1280, height = 720;  // pixels
-    bool lattice = false;            // draw the springs over the surface
+    double image_every = 1;            // s
+    double sequence_every = 1.0 / 30;  // s, rounded to whole frames of 1/60 s, at least one
+    int width = 1280, height = 720;    // pixels
+    bool lattice = false;              // draw the springs over the surface
 };
 
 /// Runs a scene from its recipes to its files: build, then for each 1/60 s simulate, map, and draw if

@@ -8,7 +8,7 @@
 #include "palpate/body/select.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/repair.h"
-#include "palpate/mesh/solid.h"
+#include "palpate/scene/surface.h"
 
 #include <fmt/format.h>
 
@@ -105,14 +105,10 @@ void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::st
                           : "one node thick, so it has no surface to draw or to hang on it");
         return;
     }
-    if (const std::string warning = size_warning(model.surface); !warning.empty()) note(warning);
     if (recipe.dims || recipe.cage || recipe.is_cloth()) return;
     if (recipe.spacing <= 0 && std::abs(double(body.count()) / recipe.nodes - 1) > 0.05)
         note(fmt::format("{} nodes instead of {}: the nearest that a spacing gives", body.count(),
                          recipe.nodes));
-    if (const std::size_t open = soundness(model.surface).open_edges; open > 0)
-        note(
-            fmt::format("its surface has {} open edges, so what is inside is a guess; close it first", open));
     const double filled = double(body.cells.size()) * std::pow(body.spacing, 3) / volume(model.surface);
     if (!(std::abs(filled - 1) < 0.1))
         note(fmt::format(
@@ -183,7 +179,12 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, std::vector<std::s
     const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
     const bool grid = recipe.dims || recipe.cloth;
     Model model;
-    if (!grid) model.surface = make_surface(recipe, scene.folder, progress).mesh;
+    if (!grid) {
+        CleanSurface made = make_surface(recipe, scene.folder, progress);
+        model.surface = std::move(made.mesh);
+        for (const std::string& note : made.notes)
+            notes.push_back(fmt::format("body {}: {}", recipe.name, note));
+    }
     tell(progress, recipe, recipe.is_cloth() ? "making cloth" : "filling with a lattice", 0.6);
     model.body = make_body(recipe, model.surface, progress);
     model.body.name = recipe.name;
@@ -302,62 +303,6 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
 }
 
 }  // namespace
-
-CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
-                          const Progress& progress) {
-    CleanSurface surface;
-    Mesh& mesh = surface.mesh;
-    auto did = [&](const std::string& what) { surface.steps.push_back(what); };
-    tell(progress, recipe, "reading", 0);
-    if (!recipe.volume.empty()) {
-        const Volume volume =
-            read_volume(find_data(recipe.volume, folder), recipe.units.value_or(Units::millimetres));
-        tell(progress, recipe, "finding the surface", 0.1);
-        mesh = isosurface(volume, *recipe.iso);
-        did(fmt::format("surface at {} of {} x {} x {} voxels: {} faces", *recipe.iso, volume.dims.x,
-                        volume.dims.y, volume.dims.z, mesh.triangles.size()));
-    } else {
-        mesh = read_mesh(find_data(recipe.surface, folder), recipe.units.value_or(Units::metres));
-        did(fmt::format("read {} vertices, {} faces", mesh.positions.size(), mesh.triangles.size()));
-        did(fmt::format("welded {} vertices", weld(mesh)));
-    }
-    tell(progress, recipe, "cleaning the surface", 0.3);
-    did(fmt::format("dropped {} collapsed or double faces", drop_collapsed(mesh)));
-    if (recipe.largest) did(fmt::format("dropped {} smaller parts", keep_largest(mesh)));
-    if (const int passes = recipe.smooth.value_or(recipe.volume.empty() ? 0 : 10); passes > 0) {
-        smooth(mesh, passes);
-        did(fmt::format("smoothed {} times", passes));
-    }
-    if (recipe.faces > 0) {
-        did(fmt::format("simplified away {} faces", decimate(mesh, std::size_t(recipe.faces))));
-        if (recipe.largest) keep_largest(mesh);  // without the crumbs that simplifying may break off
-    }
-    if (mesh.triangles.empty())
-        throw Error("no face is left", recipe.volume.empty() ? recipe.surface : recipe.volume,
-                    "ask for more faces");
-    // An open sheet has no outside.
-    const bool has_outside = !recipe.sheet || soundness(mesh).open_edges == 0;
-    if (has_outside && volume(mesh) < 0) {
-        for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);
-        did("turned it right way out");
-    }
-    rotate(mesh, recipe.rotate);
-    const vec3 way = recipe.move - (recipe.centre ? bounds(mesh).centre() : vec3(0));
-    for (vec3& p : mesh.positions) p += way;
-    compute_normals(mesh);
-    const Soundness sound = soundness(mesh);
-    did(fmt::format("{} vertices, {} faces, {} parts, {} open edges, {} bad edges", mesh.positions.size(),
-                    mesh.triangles.size(), sound.parts, sound.open_edges, sound.bad_edges));
-    return surface;
-}
-
-std::string size_warning(const Mesh& surface) {
-    const vec3 size = bounds(surface).size();
-    const float longest = std::max({size.x, size.y, size.z});
-    if (longest > 10) return fmt::format("it is {:.3g} m long; is the unit right?", longest);
-    if (longest < 0.001f) return fmt::format("it is {:.3g} m long; is the unit right?", longest);
-    return {};
-}
 
 Models build(const Scene& scene, const Progress& progress) {
     Models result;

@@ -35,19 +35,4 @@ struct Models {
 /// Reads the files, makes surfaces, bodies, embeddings and colliders, and pins. Throws Error.
 Models build(const Scene& scene, const Progress& progress = {});
 
-/// A surface, and what was done to get it, a line each with its counts.
-struct CleanSurface {
-    Mesh mesh;
-    std::vector<std::string> steps;
-};
-
-/// The surface of one recipe: read, cleaned, placed. Not for a plain box or a rectangle of cloth, whose
-/// surface comes from its nodes.
-CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
-                          const Progress& progress = {});
-
-/// What looks wrong with a surface's size, or nothing: over 10 m or under 1 mm the unit is probably not what
-/// was said.
-std::string size_warning(const Mesh& surface);
-
 }  // namespace palpate

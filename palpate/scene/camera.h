@@ -3,6 +3,7 @@
 
 namespace palpate {
 
+/// Where a picture is seen from.
 struct Camera {
     vec3 eye = vec3(0.3f, 0.2f, 0.4f);  // m
     vec3 look_at = vec3(0);             // m
@@ -11,6 +12,7 @@ struct Camera {
     bool orthographic = false;  // then the picture is as high as `angle` shows at look_at
 };
 
+/// A light as far away as the sun.
 struct Light {
     vec3 direction = vec3(0.55f, -1.0f, -0.35f);  // in which the light travels; need not be unit
     vec3 colour = vec3(1);                        // linear; 1 lights a white surface fully

@@ -72,8 +72,9 @@ void check_grid(const BodyRecipe& body, const Require& require) {
     require(std::min({d.x, d.y, d.z}) >= 1 && double(d.x) * d.y * d.z <= 1e7,
             key + " is not at least 1 along each axis and at most 10 million nodes", "change it");
     require(body.spacing > 0, key + " without spacing", "say how far apart the nodes are, in m");
-    require(!body.iso && !body.units && !body.smooth && !body.centre && body.faces == 0,
-            key + " beside iso, units, smooth, centre or faces, which mean nothing there", "remove them");
+    require(!body.iso && !body.units && !body.smooth && body.size == 0 && !body.centre && body.faces == 0,
+            key + " beside iso, units, smooth, size, centre or faces, which mean nothing there",
+            "remove them");
 }
 
 void check(const BodyRecipe& body, const Source& source) {
@@ -82,11 +83,12 @@ void check(const BodyRecipe& body, const Source& source) {
     const int sources =
         !body.volume.empty() + !body.surface.empty() + body.dims.has_value() + body.cloth.has_value();
     require(sources == 1, "wants exactly one of volume, surface, dims and cloth", "give it one");
-    require(body.volume.empty() || body.iso, "a volume without iso", "say at which value its surface lies");
-    require(body.volume.empty() == !body.iso, "iso without a volume", "remove it");
-    require(!body.centre || std::all_of(body.regions.begin(), body.regions.end(),
-                                        [](const Region& region) { return region.labels.empty(); }),
-            "centre beside labels, which would stay where they are", "use move");
+    require(!body.volume.empty() || !body.iso, "iso without a volume", "remove it");
+    require((!body.centre && body.size == 0) ||
+                std::all_of(body.regions.begin(), body.regions.end(),
+                            [](const Region& region) { return region.labels.empty(); }),
+            "centre or size beside labels, which would stay as they are", "use move and units");
+    require(body.size == 0 || !body.units, "size beside units, of which one must count", "remove one");
     require(!body.sheet || !body.surface.empty(), "sheet without a surface", "name its file");
     require(!body.sheet || body.spacing == 0, "sheet beside spacing: its nodes are its vertices",
             "remove spacing, or change the sheet by faces");
@@ -101,12 +103,15 @@ void check(const BodyRecipe& body, const Source& source) {
     check_springs(body, require);
     require((m.density > 0) != (m.mass > 0), "wants density or mass, one of them above zero", "give it one");
     require(std::min({m.youngs_modulus, m.stiffness, m.density, m.mass, m.damping, m.link_damping,
-                      body.spacing, body.shine}) >= 0,
+                      body.spacing, body.size, body.shine}) >= 0,
             "a negative number where none makes sense", "use a positive one");
     require(body.nodes > 0 && body.nodes <= 10'000'000, "nodes is not from 1 to 10 million",
             "choose a number there");
     require(body.faces >= 0 && body.smooth.value_or(0) >= 0 && body.smooth.value_or(0) <= 1000,
             "faces or smooth is out of range", "use 0 or more, and at most 1000 passes");
+    const RepairSettings& repair = body.repair;
+    require(std::min({repair.weld, repair.specks, repair.voxel}) >= 0 && repair.specks < 1,
+            "weld, specks or voxel is out of range", "give lengths in m, and specks from 0 to below 1");
     if (body.dims || body.cloth) check_grid(body, require);
     check(body.pin, "pin.", require);
     for (const Region& region : body.regions) check(region, body, source);

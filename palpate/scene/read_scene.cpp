@@ -79,9 +79,14 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("iso", body.iso);
     read("units", body.units);
     read("rotate", body.rotate);
+    read("size", body.size);
     read("centre", body.centre);
     read("move", body.move);
     read("largest", body.largest);
+    read("weld", body.repair.weld);
+    read("specks", body.repair.specks);
+    read("solid", body.repair.solid);
+    read("voxel", body.repair.voxel);
     read("smooth", body.smooth);
     read("faces", body.faces);
     read("nodes", body.nodes);
@@ -350,12 +355,24 @@ toml::table parse_value(const std::string& key, const std::string& value) {
     }
 }
 
+// Where a change goes: "body.brain.nodes" as three words.
+std::vector<std::string> target(const Change& change) {
+    return split(change.substr(0, change.find('=')), '.');
+}
+
+// Whether it names what a body is made from.
+bool names_source(const Change& change) {
+    const std::vector<std::string> words = target(change);
+    constexpr std::string_view sources[] = {"volume", "surface", "dims", "cloth"};
+    return words.size() == 3 && words[0] == "body" && std::ranges::count(sources, words[2]) > 0;
+}
+
 void apply(toml::table& root, const Change& change) {
     const Source source{"--set " + change};
     const auto equals = change.find('=');
     if (equals == std::string::npos || equals == 0)
         source.fail(0, "no value", "write --set body.brain.nodes=5000");
-    std::vector<std::string> words = split(change.substr(0, equals), '.');
+    std::vector<std::string> words = target(change);
     const std::string key = words.back();
     words.pop_back();
 
@@ -375,6 +392,8 @@ void apply(toml::table& root, const Change& change) {
     }
     toml::table value = parse_value(key, change.substr(equals + 1));
     if (!value.contains(key)) source.fail(0, "no value", "write one after the equals sign");
+    if (names_source(change))
+        for (const char* old : {"volume", "surface", "dims", "cloth", "iso", "units"}) table->erase(old);
     table->insert_or_assign(key, *value.get(key));
 }
 
@@ -390,7 +409,10 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
         source.fail(int(error.source().begin.line), std::string(error.description()),
                     "correct the TOML there");
     }
-    for (const Change& change : changes) apply(root, change);
+    // Another source first: it takes away what was said of the old one.
+    std::vector<Change> ordered(changes.begin(), changes.end());
+    std::stable_partition(ordered.begin(), ordered.end(), names_source);
+    for (const Change& change : ordered) apply(root, change);
     Scene scene;
     scene.name = std::filesystem::path(name).stem().string();
     scene.folder = folder;

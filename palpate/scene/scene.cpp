@@ -12,8 +12,12 @@ std::optional<std::filesystem::path> find(const std::string& name, const std::fi
     std::vector<std::filesystem::path> places{folder};
     if (const char* data = std::getenv("PALPATE_DATA")) places.push_back(data);
     places.push_back("/usr/share/mricron/templates");
-    for (const auto& place : places)
-        if (std::error_code error; std::filesystem::is_regular_file(place / name, error)) return place / name;
+    for (const auto& place : places) {
+        std::error_code error;  // a device or a pipe is never meant
+        const auto kind = std::filesystem::status(place / name, error).type();
+        using enum std::filesystem::file_type;
+        if (!name.empty() && (kind == regular || kind == directory)) return place / name;
+    }
     return std::nullopt;
 }
 

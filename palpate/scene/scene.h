@@ -4,6 +4,7 @@
 #include "palpate/body/material.h"
 #include "palpate/body/simulation.h"
 #include "palpate/mesh/mesh.h"
+#include "palpate/mesh/repair.h"
 #include "palpate/scene/camera.h"
 #include "palpate/scene/path.h"
 
@@ -44,21 +45,24 @@ struct Region {
     int line = 0;
 };
 
+/// How a body comes about: what it is made from, of what stuff it is, how it looks.
 struct BodyRecipe {
     std::string name;
-    std::string volume;   // a file of voxels; or
+    std::string volume;   // a file of voxels, or a folder of slices; or
     std::string surface;  // a file of triangles; or
     std::vector<std::string>
         stand_ins;               // other files, the first of which that is found is taken where that is not
     std::optional<ivec3> dims;   // a plain box of so many nodes along each axis; or
     std::optional<ivec2> cloth;  // a rectangle of cloth
     bool sheet = false;          // the surface itself is cloth: a node a vertex, a spring an edge
-    std::optional<float> iso;    // the value at the surface of a volume; half-integer for integer volumes
+    std::optional<float> iso;    // the value at the surface of a volume; else the one its values suggest
     std::optional<Units> units;  // of the file; volumes default to millimetres, surfaces to metres
     vec3 rotate = vec3(0);       // degrees about x, then y, then z
-    bool centre = false;         // after turning, bring the middle of its box to the origin
+    float size = 0;              // m: after turning, scale it so that its longest side is this; 0 leaves it
+    bool centre = false;         // then bring the middle of its box to the origin
     vec3 move = vec3(0);         // m, after that
     bool largest = true;         // keep only the largest connected part
+    RepairSettings repair{};     // its weld, specks, solid and voxel are keys of the body; the rest follows
     std::optional<int> smooth;   // passes of smoothing; 10 for a volume, 0 for a surface
     int faces = 0;               // simplify the surface to about this many; 0 leaves it
     int nodes = 20'000;          // of the lattice; or
@@ -132,6 +136,7 @@ struct ToolRecipe {
     int line = 0;
 };
 
+/// All that a scene's file says.
 struct Scene {
     std::string name;              // of the file, without its ending
     std::filesystem::path folder;  // that files are named from
@@ -147,7 +152,8 @@ struct Scene {
     std::vector<ToolRecipe> tools;
 };
 
-/// A change from outside the file: `body.brain.nodes=5000`.
+/// A change from outside the file: `body.brain.nodes=5000`. One that names another source for a body
+/// (volume, surface, dims, cloth) takes away what was said of the old one: its file, iso and units.
 using Change = std::string;
 
 /// Reads a scene: the path of a TOML file, or the name of a shipped scene. Changes are made before it is
@@ -166,8 +172,9 @@ struct ShippedScene {
 };
 const std::vector<ShippedScene>& shipped_scenes();
 
-/// Finds a file that a scene names: as it stands if absolute, else in the scene's folder, in the folder that
-/// the variable PALPATE_DATA names, or where Debian's mricron-data puts its templates. Throws Error.
+/// Finds a file or a folder that a scene names: as it stands if absolute, else in the scene's folder, in the
+/// folder that the variable PALPATE_DATA names, or where Debian's mricron-data puts its templates. Throws
+/// Error.
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder);
 bool is_found(const std::string& name, const std::filesystem::path& folder);
 

@@ -91,12 +91,13 @@ class Reader {
 
     void finish() const {
         for (const auto& [key, node] : table_) {
-            if (known_.contains(std::string(key.str()))) continue;
+            const std::string name(key.str());
+            if (known_.contains(name)) continue;
             const auto nearest = std::min_element(
                 known_.begin(), known_.end(),
-                [&](const auto& a, const auto& b) { return edits(a, key.str()) < edits(b, key.str()); });
+                [&](const auto& a, const auto& b) { return edits(a, name) < edits(b, name); });
             source_.fail(
-                line_of(node), fmt::format("unknown key \"{}\" of {}", key.str(), what_),
+                line_of(node), fmt::format("unknown key \"{}\" of {}", name, what_),
                 nearest == known_.end() ? "remove it" : fmt::format("did you mean \"{}\"?", *nearest));
         }
     }

@@ -1,47 +1,17 @@
 // The palpate command as its users meet it: what it prints, how it ends, what it leaves behind.
+#include "tests/app/command.h"
+
 #include "palpate/base/files.h"
 #include "palpate/base/pipe.h"
 #include "palpate/mesh/write.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 
 namespace palpate {
 namespace {
-
-struct Outcome {
-    int status;
-    std::string said;  // both streams
-};
-
-Outcome shell(const std::string& command) {
-    std::FILE* pipe = popen(("exec 2>&1; " + command).c_str(), "r");
-    Outcome outcome{-1, {}};
-    std::array<char, 4096> block;
-    while (const std::size_t n = std::fread(block.data(), 1, block.size(), pipe))
-        outcome.said.append(block.data(), n);
-    const int ended = pclose(pipe);
-    outcome.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
-    return outcome;
-}
-
-Outcome palpate(const std::string& arguments) {
-    return shell(std::string(PALPATE_COMMAND) + " " + arguments);
-}
-
-// Failed with exactly one line, which says these words.
-void expect_one_line(const Outcome& outcome, std::initializer_list<std::string> words) {
-    EXPECT_EQ(outcome.status, 1) << outcome.said;
-    EXPECT_TRUE(outcome.said.starts_with("palpate: error: ")) << outcome.said;
-    EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1) << outcome.said;
-    for (const std::string& word : words)
-        EXPECT_NE(outcome.said.find(word), std::string::npos) << outcome.said;
-}
 
 const std::string brain = "/usr/share/mricron/templates/ch2bet.nii.gz";
 bool have_brain() { return std::filesystem::exists(brain); }
@@ -131,6 +101,10 @@ TEST(Command, BadMeshesAndVolumes) {
     refuse("words.nii", std::string(400, 'x'), " --iso 1");
     expect_one_line(palpate("import " + (scratch / "none.ply").string() + out), {"none.ply"});
     expect_one_line(palpate("import " + (scratch / "a.xyz").string() + out), {"a.xyz"});
+    write_mesh(block(vec3(0), vec3(0.1f)), scratch / "block.obj");
+    EXPECT_EQ(palpate("import " + (scratch / "block.obj").string() + out + " --iso 3").status, 2);
+    EXPECT_EQ(palpate("import " + (scratch / "block.obj").string() + out + " --size 1 --units mm").status, 2);
+    EXPECT_EQ(palpate("import " + (scratch / "block.obj").string() + out + " --solid clay").status, 2);
     EXPECT_FALSE(std::filesystem::exists(scratch / "out.ply"));
     if (!have_brain()) GTEST_SKIP() << "mricron-data is not available";
     refuse("truncated.nii.gz", read_text(brain).substr(0, 500'000), " --iso 60.5");
@@ -161,6 +135,9 @@ TEST(Command, AFullDiskLeavesNothing) {
                     {"out.ply", "disk"});
     expect_one_line(shell(limited + "run box --frames 2 --nodes " + (scratch / "nodes.csv").string()),
                     {"nodes.csv", "disk"});
+    for (const char* name : {"s.glb", "s.mdd"})
+        expect_one_line(shell(limited + "run box --frames 60 --sequence " + (scratch / name).string()),
+                        {name, "disk"});
     EXPECT_EQ(scratch.entries(), 1u);
 }
 
@@ -187,7 +164,8 @@ TEST(Command, AFilmThatFailsLeavesNothing) {
 TEST(Command, TroubleWithOutputsIsSaid) {
     Scratch scratch;
     EXPECT_EQ(shell(std::string(PALPATE_COMMAND) + " list scenes 2>/dev/null >/dev/full").status, 1);
-    expect_one_line(palpate("run box --surface " + (scratch / "out.stl").string()), {"out.stl", ".ply"});
+    expect_one_line(palpate("run box --surface " + (scratch / "out.xyz").string()), {"out.xyz", ".ply"});
+    expect_one_line(palpate("run box --sequence " + (scratch / "out.gltf").string()), {"out.gltf", ".glb"});
     expect_one_line(palpate("run box --report " + (scratch / ".").string()), {"folder"});
     std::filesystem::create_symlink("/dev/null",
                                     scratch / "null");  // a link, so that no bug can hurt the device
@@ -204,6 +182,21 @@ TEST(Command, InfoNamesSizesInMetres) {
     EXPECT_NE(millimetres.said.find("0.05 x 0.1 x 0.2"), std::string::npos) << millimetres.said;
     EXPECT_EQ(millimetres.said.find("unit right"), std::string::npos) << millimetres.said;
     EXPECT_EQ(palpate("info --units miles " + (scratch / "block.ply").string()).status, 2);
+}
+
+TEST(Command, InterruptedItLeavesNothingHalfWritten) {
+    if (!has_program("ffmpeg")) GTEST_SKIP() << "ffmpeg is not available";
+    Scratch scratch;
+    const std::string film = (scratch / "film.mp4").string();
+    for (const char* signal : {"TERM", "INT", "HUP"}) {
+        // Stopped as soon as the film has begun.
+        const Outcome outcome =
+            shell(fmt::format("{} run box --video {} & while kill -0 $! && [ ! -s {}.part$! ]; do sleep "
+                              "0.05; done; kill -{} $!; wait $!",
+                              PALPATE_COMMAND, film, film, signal));
+        EXPECT_GT(outcome.status, 128) << outcome.said;
+        EXPECT_EQ(scratch.entries(), 0u) << signal;
+    }
 }
 
 }  // namespace

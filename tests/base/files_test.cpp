@@ -48,6 +48,25 @@ TEST(Files, AFullDiskIsAnErrorWithNothingLeft) {
     EXPECT_EQ(scratch.entries(), 0u);
 }
 
+TEST(Files, WhatIsUnfinishedCanBeRemovedAtOnce) {
+    Scratch scratch;
+    {
+        Unfinished first(scratch / "first"), second(scratch / "second");
+        write_text(first.name(), "half");
+        write_text(second.name(), "whole");
+        second.finish();
+        remove_unfinished();
+        EXPECT_FALSE(std::filesystem::exists(first.name()));
+        EXPECT_THROW(first.finish(), Error);
+    }
+    EXPECT_EQ(read_text(scratch / "second"), "whole");
+    for (int i = 0; i < 1000; ++i) Unfinished(scratch / "none");  // their places are given back
+    Unfinished late(scratch / "late");
+    write_text(late.name(), "half");
+    remove_unfinished();
+    EXPECT_EQ(scratch.entries(), 1u);
+}
+
 TEST(Files, LinksAndDevicesStayWhatTheyAre) {
     Scratch scratch;
     write_text(scratch / "real", "old");

@@ -120,16 +120,6 @@ TEST(WriteMesh, ObjComesBackFloatForFloatCornerForCorner) {
     EXPECT_EQ(twice.triangles, once.triangles);
 }
 
-TEST(WriteMesh, RefusesOtherEndingsAndLeavesNothing) {
-    Scratch scratch;
-    for (const char* name : {"a.stl", "a", "ply"}) {
-        const std::string line =
-            error_of(scratch / name, [&] { write_mesh(box(vec3(0), vec3(1)), scratch / name); });
-        EXPECT_HAS(line, ".ply or .obj");
-    }
-    EXPECT_EQ(scratch.entries(), 0u);
-}
-
 TEST(ReadMesh, ScalesByUnits) {
     Scratch scratch;
     write_mesh(box(vec3(0), vec3(1000)), scratch / "a.ply");
@@ -257,11 +247,11 @@ TEST(ReadMesh, RefusesClaimsThatTheFileCannotHold) {
     again.insert(again.find("end_header"), "format binary_little_endian 1.0\n");
     put(scratch / "a.ply", again + three + face);
     EXPECT_EQ(read_mesh(scratch / "a.ply", Units::metres).triangles.size(), 1u);
-    // So many properties that only reading the header takes minutes.
+    // Far more properties than numbers.
     std::string endless = ply_header("ascii", "3", "1"), properties;
     for (int i = 0; i < 100000; ++i) properties += "property float a\n";
     endless.insert(endless.find("end_header"), properties);
-    EXPECT_HAS(mesh_error(scratch / "a.ply", endless + three + face), "header");
+    EXPECT_HAS(mesh_error(scratch / "a.ply", endless + three + face), "truncated");
     // A million elements of no bytes would pass any check of sizes.
     EXPECT_HAS(
         mesh_error(scratch / "a.ply", "ply\nformat ascii 1.0\nelement void 1000000000000\nend_header\n"),
@@ -310,7 +300,7 @@ TEST(ReadMesh, RefusesEmptyMissingAndOtherFiles) {
     }
     EXPECT_HAS(mesh_error(scratch / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "no faces");
     EXPECT_HAS(mesh_error(scratch / "a.ply", ply_header("ascii", "1", "0") + "0 0 0\n"), "no faces");
-    EXPECT_HAS(mesh_error(scratch / "a.stl", "solid"), ".ply or .obj");
+    EXPECT_HAS(mesh_error(scratch / "a.xyz", "1 2 3"), ".ply, .obj");
     std::filesystem::create_directory(scratch / "folder.ply");
     EXPECT_HAS(error_of(scratch / "folder.ply", [&] { read_mesh(scratch / "folder.ply", Units::metres); }),
                "folder");
@@ -322,17 +312,6 @@ TEST(ReadMesh, RefusesAPlyCutAnywhere) {
     const std::string whole = read_text(scratch / "whole.ply");
     for (std::size_t length = 0; length < whole.size(); ++length)
         EXPECT_NE(mesh_error(scratch / "a.ply", whole.substr(0, length)), "no error") << length;
-}
-
-// Reading must end in a sound mesh or in an Error, whatever the bytes.
-void expect_sound_or_error(const std::filesystem::path& path) {
-    try {
-        const Mesh mesh = read_mesh(path, Units::metres);
-        for (vec3 p : mesh.positions)
-            EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
-        for (uvec3 t : mesh.triangles) EXPECT_LT(std::max({t.x, t.y, t.z}), mesh.positions.size());
-        EXPECT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
-    } catch (const Error&) {}
 }
 
 TEST(ReadMesh, SurvivesDamagedFilesInSilence) {
@@ -348,8 +327,7 @@ TEST(ReadMesh, SurvivesDamagedFilesInSilence) {
         for (int i = 0; i < 1000; ++i) {
             std::string text = whole;
             for (int flips = 1 + i % 4; flips > 0; --flips) text[random() % text.size()] = char(random());
-            put(scratch / name, text);
-            expect_sound_or_error(scratch / name);
+            expect_sound_or_error(name, text);
         }
     }
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
@@ -376,7 +354,7 @@ TEST(ReadMesh, AGzipReadsAsWhatIsInIt) {
     std::string damaged = whole;
     damaged[whole.size() / 2] ^= 0x55;
     EXPECT_HAS(mesh_error(scratch / "damaged.ply.gz", damaged), "gzip");
-    EXPECT_HAS(mesh_error(scratch / "a.stl.gz", whole), "format");
+    EXPECT_HAS(mesh_error(scratch / "a.xyz.gz", whole), "format");
     EXPECT_HAS(error_of(scratch / "none.ply.gz", [&] { read_mesh(scratch / "none.ply.gz", Units::metres); }),
                ";");
 }

@@ -221,8 +221,8 @@ TEST(ReadVolume, RefusesWhatIsNotFinite) {
 TEST(ReadVolume, RefusesMissingAndOtherFiles) {
     Scratch scratch;
     EXPECT_HAS(error_of(scratch / "a.nii", [&] { read_volume(scratch / "a.nii"); }), "cannot open");
-    EXPECT_HAS(volume_error(scratch / "a.mha", small().bytes()), ".nii or .nii.gz");
-    EXPECT_HAS(volume_error(scratch / "a.gz", small().bytes()), ".nii or .nii.gz");
+    EXPECT_HAS(volume_error(scratch / "a.mha", small().bytes()), "no MetaImage header");
+    EXPECT_HAS(volume_error(scratch / "a.gz", small().bytes()), "use .nii, .nii.gz");
     std::filesystem::create_directory(scratch / "folder.nii");
     EXPECT_HAS(error_of(scratch / "folder.nii", [&] { read_volume(scratch / "folder.nii"); }), "folder");
 }
@@ -233,7 +233,7 @@ TEST(ReadVolume, SurvivesDamagedHeadersInSilence) {
         small().matrix({{1, 0, 0, 10}, {0, 2, 0, 20}, {0, 0, 3, 30}}).set<std::int16_t>(252, 1).bytes();
     std::mt19937 random(5);
     testing::internal::CaptureStderr();
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 300; ++i) {
         std::string bytes = whole;
         for (int flips = 1 + i % 3; flips > 0; --flips) bytes[random() % 352] = char(random());
         put(scratch / "a.nii", bytes);

@@ -72,6 +72,40 @@ inline double area(const Mesh& mesh) {
     return sum;
 }
 
+/// A torus around z: `large` from its middle to that of its tube, `small` the radius of the tube.
+inline Mesh torus(float large, float small, unsigned around, unsigned across) {
+    Mesh mesh;
+    const float whole = 2 * float(M_PI);
+    for (unsigned i = 0; i < around; ++i)
+        for (unsigned j = 0; j < across; ++j) {
+            const float a = whole * float(i) / float(around), b = whole * float(j) / float(across);
+            const float r = large + small * std::cos(b);
+            mesh.positions.push_back({r * std::cos(a), r * std::sin(a), small * std::sin(b)});
+            const unsigned ni = (i + 1) % around, nj = (j + 1) % across;
+            mesh.triangles.push_back({i * across + j, ni * across + j, ni * across + nj});
+            mesh.triangles.push_back({i * across + j, ni * across + nj, i * across + nj});
+        }
+    return mesh;
+}
+
+/// A band of this width that is turned over `half_turns` times on its way round; with an odd number it has
+/// one side only.
+inline Mesh band(float width, int half_turns, unsigned around) {
+    Mesh mesh;
+    for (unsigned i = 0; i < around; ++i) {
+        const float a = 2 * float(M_PI) * float(i) / float(around), b = 0.5f * float(half_turns) * a;
+        for (float side : {-0.5f, 0.5f}) {
+            const float r = 1 + side * width * std::cos(b);
+            mesh.positions.push_back({r * std::cos(a), r * std::sin(a), side * width * std::sin(b)});
+        }
+        const bool crossed = i + 1 == around && half_turns % 2 != 0;
+        const unsigned next = 2 * ((i + 1) % around), low = next + crossed, high = next + !crossed;
+        mesh.triangles.push_back({2 * i, low, high});
+        mesh.triangles.push_back({2 * i, high, 2 * i + 1});
+    }
+    return mesh;
+}
+
 /// A volume of one metre a voxel whose values are f(voxel).
 template <class F>
 Volume volume_of(ivec3 dims, F f) {

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -227,6 +228,72 @@ TEST(Run, DivergenceIsReportedAndNotDrawn) {
     ASSERT_FALSE(report.notes.empty());
     EXPECT_NE(report.notes.back().find("diverged"), std::string::npos);
     EXPECT_LT(report.bodies[0].largest_speed, 100);
+}
+
+// The last picture of a sequence is the surface that is written at the end, float for float.
+TEST(Run, ASequenceEndsWithTheSurface) {
+    Scratch scratch;
+    RunSettings settings;
+    settings.frames = 60;
+    settings.surface = scratch / "end.ply";
+    for (const char* name : {"a.ply", "a.pc2"}) {
+        settings.sequence = scratch / name;
+        run(scene(), settings);
+    }
+    EXPECT_EQ(read_text(scratch / "a-0031.ply"), read_text(settings.surface));
+    EXPECT_NE(read_text(scratch / "a-0001.ply"), read_text(settings.surface));
+    EXPECT_EQ(scratch.entries(), 1u + 31 + 2);
+    const Mesh end = read_mesh(settings.surface, Units::metres);
+    const std::string cache = read_text(scratch / "a.pc2");
+    const std::size_t bytes = 12 * end.positions.size();
+    ASSERT_EQ(cache.size(), 32 + 31 * bytes);
+    EXPECT_EQ(std::memcmp(cache.data() + 32 + 30 * bytes, end.positions.data(), bytes), 0);
+}
+
+TEST(Run, EachBodyHasItsOwnSequence) {
+    Scratch scratch;
+    const std::string another = pressed + R"(
+[[body]]
+name = "other"
+dims = [3, 3, 3]
+spacing = 0.01
+youngs_modulus = 8000
+density = 1000
+move = [0.2, 0, 0]
+)";
+    RunSettings settings;
+    settings.frames = 7;
+    settings.sequence_every = 0.049;  // three frames of 1/60 s
+    settings.sequence = scratch / "s.vtp";
+    run(parse_scene(another, "two.toml", "."), settings);
+    EXPECT_EQ(scratch.entries(), 2u * (3 + 1));
+    EXPECT_NE(read_text(scratch / "s-other.pvd").find("timestep=\"0.1\" file=\"s-other-0003.vtp\""),
+              std::string::npos);
+    settings.sequence = scratch / "s.glb";
+    settings.frames = 1'000'000'000;  // nothing is simulated before it is said that this does not fit
+    EXPECT_THROW(run(parse_scene(another, "two.toml", "."), settings), Error);
+}
+
+// What was good until a run diverges is whole.
+TEST(Run, ASequenceThatDivergesIsKept) {
+    Scratch scratch;
+    Scene wild = scene({"simulation.step=0.0166", "body.block.damping=0"});
+    wild.simulation.force = true;
+    RunSettings settings;
+    settings.sequence = scratch / "a.pc2";
+    settings.sequence_every = 0;  // every frame
+    const Report report = run(wild, settings);
+    ASSERT_TRUE(report.diverged);
+    const std::string cache = read_text(settings.sequence);
+    std::int32_t pictures = 0;
+    std::memcpy(&pictures, cache.data() + 28, 4);
+    EXPECT_EQ(pictures, report.frames + 1);
+    EXPECT_EQ(cache.size(), 32 + 12 * report.bodies[0].vertices * std::size_t(pictures));
+    for (std::size_t place = 32; place < cache.size(); place += 4) {
+        float number;
+        std::memcpy(&number, cache.data() + place, 4);
+        ASSERT_LE(std::abs(number), 1e3f);
+    }
 }
 
 TEST(Run, AToolThatMeetsNothingIsNamed) {

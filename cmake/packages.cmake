@@ -1,0 +1,27 @@
+# All that the library stands on. The build reads this list, and so does whoever finds the installed library: so the
+# libraries that ours are linked with are found there again. `palpate_needs` is find_package or find_dependency.
+palpate_needs(glm)
+palpate_needs(fmt)
+
+# Some of the following go on about optional programs that are not installed.
+set(palpate_log_level "${CMAKE_MESSAGE_LOG_LEVEL}")
+set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+
+# mesh
+set(palpate_itk ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGDCM)
+list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)  # where Debian puts it
+palpate_needs(ZLIB)
+palpate_needs(assimp)
+palpate_needs(meshoptimizer)
+palpate_needs(ITK 5 COMPONENTS ${palpate_itk})
+palpate_needs(OpenVDB)
+
+# gl
+palpate_needs(PkgConfig)
+pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
+
+# scene, run
+palpate_needs(tomlplusplus)
+palpate_needs(nlohmann_json)
+
+set(CMAKE_MESSAGE_LOG_LEVEL "${palpate_log_level}")

@@ -1,0 +1,13 @@
+# find_package(palpate) in a program outside: the targets palpate::palpate (all of it) and palpate::FLOOR (one floor
+# with those below it: base, mesh, body, scene, solver, gl, render, run).
+include(CMakeFindDependencyMacro)
+macro(palpate_needs)
+    find_dependency(${ARGV})
+endmacro()
+
+get_property(palpate_languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+if(NOT C IN_LIST palpate_languages)
+    enable_language(C)  # ITK's own CMake files want it
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/palpateTargets.cmake)

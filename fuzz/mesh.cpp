@@ -1,0 +1,38 @@
+// Any bytes as a mesh of the format PALPATE_FORMAT: an Error, or a mesh that is sound.
+#include "palpate/base/error.h"
+#include "palpate/mesh/read.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+namespace {
+
+using namespace palpate;
+
+void demand(bool truth) {
+    if (!truth) std::abort();
+}
+
+void demand_finite(const std::vector<vec3>& list) {
+    for (vec3 v : list) demand(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    try {
+        const Mesh mesh = parse_mesh(bytes, "fuzz" PALPATE_FORMAT, Units::millimetres);
+        demand(!mesh.triangles.empty());
+        demand(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+        demand_finite(mesh.positions);
+        demand_finite(mesh.normals);
+        for (uvec3 t : mesh.triangles)
+            for (int k = 0; k < 3; ++k) demand(t[k] < mesh.positions.size());
+    } catch (const Error& error) {
+        demand(std::string_view(error.what()).find_first_of("\n\r") == std::string_view::npos);
+    }
+    return 0;
+}

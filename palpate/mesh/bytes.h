@@ -1,0 +1,22 @@
+#pragma once
+#include <bit>
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace palpate {
+
+static_assert(std::endian::native == std::endian::little, "files are written as numbers lie in memory");
+
+/// The bytes of a plain value, lowest first, at the end of a file's text.
+template <class T>
+void append(std::string& bytes, const T& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <class T>
+void append_all(std::string& bytes, std::span<const T> values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+}  // namespace palpate

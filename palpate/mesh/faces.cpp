@@ -1,0 +1,199 @@
+#include "palpate/mesh/corners.h"
+#include "palpate/mesh/repair.h"
+
+#include <array>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+bool is_collapsed(uvec3 t) { return t.x == t.y || t.y == t.z || t.z == t.x; }
+
+struct Hash {
+    std::size_t operator()(uvec3 t) const {
+        return ((std::uint64_t(t.x) << 32 | t.y) * 0x9e3779b97f4a7c15u ^ t.z) * 0xbf58476d1ce4e5b9u >> 16;
+    }
+};
+
+// The same face begun at its lowest corner.
+uvec3 lowest_first(uvec3 t) {
+    while (t.x > t.y || t.x > t.z) t = {t.y, t.z, t.x};
+    return t;
+}
+
+uvec3 ascending(uvec3 t) {
+    t = lowest_first(t);
+    return t.y < t.z ? t : uvec3(t.x, t.z, t.y);
+}
+
+// Removes the faces for which `drop` is true.
+void drop_faces(Mesh& mesh, const std::vector<char>& drop) {
+    std::size_t face = 0;
+    std::erase_if(mesh.triangles, [&](uvec3) { return drop[face++]; });
+}
+
+// Mends flat faces, each of them with only its neighbours, so that within a pass none that has changed is
+// looked at again.
+class FlatFaces {
+ public:
+    explicit FlatFaces(Mesh& mesh) : mesh_(mesh), twins_(twins(mesh)), corners_(mesh) {}
+
+    // Returns whether anything changed.
+    bool mend() {
+        changed_.assign(mesh_.positions.size(), false);
+        bool any = false;
+        for (Index face = 0; face < mesh_.triangles.size(); ++face)
+            if (!is_collapsed(mesh_.triangles[face]) && is_flat(mesh_, mesh_.triangles[face]))
+                any |= mend(face);
+        return any;
+    }
+
+ private:
+    Index vertex(Index corner) const { return mesh_.triangles[corner / 3][corner % 3]; }
+    double length(Index corner) const {
+        return glm::distance(dvec3(mesh_.positions[vertex(corner)]),
+                             dvec3(mesh_.positions[vertex(Corners::next(corner))]));
+    }
+
+    // A needle has two long sides, a cap one that is as long as both others.
+    bool mend(Index face) {
+        std::array<Index, 3> side = {3 * face, 3 * face + 1, 3 * face + 2};
+        std::sort(side.begin(), side.end(), [&](Index a, Index b) { return length(a) < length(b); });
+        return length(side[0]) < 1e-3 * length(side[2]) ? collapse(side[0]) || flip(side[2])
+                                                        : flip(side[2]) || collapse(side[0]);
+    }
+
+    bool unchanged(Index v) const { return !changed_[v]; }
+
+    // So that a vertex of very many faces does not cost their square.
+    bool may_change(Index v) const { return unchanged(v) && corners_.at(v).size() <= 500; }
+
+    // Puts the far end of the side that begins at `corner` to its near end. Two faces collapse with it. Only
+    // where the two ends have no common neighbours but those of these faces does nothing else get folded.
+    bool collapse(Index corner) {
+        const Index to = vertex(corner), from = vertex(Corners::next(corner));
+        if (twins_[corner] == none || !may_change(to) || !may_change(from)) return false;
+        std::vector<Index> near_to = neighbours(to), near_from = neighbours(from), common;
+        std::set_intersection(near_to.begin(), near_to.end(), near_from.begin(), near_from.end(),
+                              std::back_inserter(common));
+        auto all_unchanged = [&](const std::vector<Index>& near) {
+            return std::all_of(near.begin(), near.end(), [&](Index v) { return unchanged(v); });
+        };
+        if (common.size() != 2 || near_to.size() < 4 || near_from.size() < 4 || !all_unchanged(near_to) ||
+            !all_unchanged(near_from))
+            return false;
+        for (Index v : near_to) changed_[v] = true;
+        for (Index v : near_from) changed_[v] = true;
+        for (Index c : corners_.at(from)) mesh_.triangles[c / 3][c % 3] = to;
+        return true;
+    }
+
+    // Joins the corners across the side that begins at `corner`, instead of its ends.
+    bool flip(Index corner) {
+        const Index back = twins_[corner];
+        if (back == none) return false;
+        const Index a = vertex(corner), b = vertex(back), c = vertex(Corners::previous(corner)),
+                    d = vertex(Corners::previous(back));
+        if (c == d || !unchanged(a) || !unchanged(b) || !may_change(c) || !unchanged(d)) return false;
+        const std::vector<Index> near = neighbours(c);
+        if (std::binary_search(near.begin(), near.end(), d)) return false;
+        mesh_.triangles[corner / 3] = {a, d, c};
+        mesh_.triangles[back / 3] = {d, b, c};
+        changed_[a] = changed_[b] = changed_[c] = changed_[d] = true;
+        return true;
+    }
+
+    std::vector<Index> neighbours(Index v) const {
+        std::vector<Index> near;
+        for (Index c : corners_.at(v)) {
+            near.push_back(vertex(Corners::next(c)));
+            near.push_back(vertex(Corners::previous(c)));
+        }
+        std::sort(near.begin(), near.end());
+        near.erase(std::unique(near.begin(), near.end()), near.end());
+        return near;
+    }
+
+    Mesh& mesh_;
+    std::vector<Index> twins_;
+    Corners corners_;
+    std::vector<char> changed_;  // by vertex, in this pass
+};
+
+std::size_t count_flat(const Mesh& mesh) {
+    return std::size_t(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                                     [&](uvec3 t) { return is_flat(mesh, t); }));
+}
+
+}  // namespace
+
+std::size_t drop_unused(Mesh& mesh) {
+    std::vector<Index> place(mesh.positions.size(), none);
+    for (uvec3 t : mesh.triangles) place[t.x] = place[t.y] = place[t.z] = 0;
+    Index used = 0;
+    for (std::size_t v = 0; v < place.size(); ++v) {
+        if (place[v] == none) continue;
+        mesh.positions[used] = mesh.positions[v];
+        place[v] = used++;
+    }
+    const std::size_t went = place.size() - used;
+    if (went == 0) return 0;
+    mesh.positions.resize(used);
+    drop_attributes(mesh);
+    for (uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
+    return went;
+}
+
+std::size_t drop_collapsed(Mesh& mesh) {
+    std::unordered_set<uvec3, Hash> seen(mesh.triangles.size());
+    const std::size_t went = std::erase_if(
+        mesh.triangles, [&](uvec3 t) { return is_collapsed(t) || !seen.insert(lowest_first(t)).second; });
+    drop_unused(mesh);
+    return went;
+}
+
+std::size_t drop_copies(Mesh& mesh) {
+    std::unordered_set<uvec3, Hash> seen(mesh.triangles.size());
+    return std::erase_if(mesh.triangles, [&](uvec3 t) { return !seen.insert(ascending(t)).second; });
+}
+
+std::size_t drop_flaps(Mesh& mesh) {
+    std::unordered_map<uvec3, Index, Hash> last;  // of the faces with these corners that have no back yet
+    last.reserve(mesh.triangles.size());
+    std::vector<Index> before(mesh.triangles.size());  // and the one before it
+    std::vector<char> drop(mesh.triangles.size());
+    std::size_t went = 0;
+    for (Index face = 0; face < mesh.triangles.size(); ++face) {
+        const uvec3 t = lowest_first(mesh.triangles[face]);
+        Index& open = last.try_emplace(ascending(t), none).first->second;
+        if (open != none && lowest_first(mesh.triangles[open]) != t) {
+            drop[face] = drop[open] = true;
+            open = before[open];
+            went += 2;
+        } else {
+            before[face] = std::exchange(open, face);
+        }
+    }
+    drop_faces(mesh, drop);
+    return went;
+}
+
+std::size_t drop_flat_faces(Mesh& mesh) {
+    constexpr int most_passes = 8;  // each takes every other one at least of a row of them
+    std::size_t went = 0, flat = count_flat(mesh);
+    for (int pass = 0; pass < most_passes && flat > 0; ++pass) {
+        Mesh mended{mesh.positions, {}, mesh.triangles};
+        FlatFaces(mended).mend();
+        drop_collapsed(mended);
+        const std::size_t left = count_flat(mended);
+        if (left >= flat) break;
+        went += flat - left;
+        flat = left;
+        mesh = std::move(mended);
+    }
+    return went;
+}
+
+}  // namespace palpate

@@ -1,0 +1,178 @@
+#include "palpate/mesh/formats/formats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <set>
+
+namespace palpate {
+namespace {
+
+// A kind of number; all of them are exact in double.
+struct Kind {
+    std::string_view name, other_name;
+    std::size_t bytes;
+    double (*load)(const char* from, bool swapped);
+};
+
+template <class T>
+double load(const char* from, bool swapped) {
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), from, sizeof raw);
+    if (swapped) std::reverse(raw.begin(), raw.end());
+    return double(std::bit_cast<T>(raw));
+}
+
+constexpr Kind kinds[] = {
+    {"char", "int8", 1, load<std::int8_t>},    {"uchar", "uint8", 1, load<std::uint8_t>},
+    {"short", "int16", 2, load<std::int16_t>}, {"ushort", "uint16", 2, load<std::uint16_t>},
+    {"int", "int32", 4, load<std::int32_t>},   {"uint", "uint32", 4, load<std::uint32_t>},
+    {"float", "float32", 4, load<float>},      {"double", "float64", 8, load<double>}};
+
+// What a mesh has a place for.
+constexpr std::string_view columns[] = {"x", "y", "z", "nx", "ny", "nz"};
+constexpr int corners = 6, other = 7;
+
+struct Property {
+    int place;  // among columns, or one of the two above
+    const Kind* kind;
+    const Kind* length;  // what a list's length is stored as; a plain property has none
+};
+
+struct Element {
+    std::string_view name;
+    double count;
+    std::vector<Property> properties;
+};
+
+class Ply {
+ public:
+    explicit Ply(Source source) : source_(std::move(source)) {}
+
+    Draft read() {
+        source_.skip_mark();
+        read_header();
+        for (const Element& element : elements_)
+            if (!element.properties.empty()) read_rows(element);
+        return std::move(draft_);
+    }
+
+ private:
+    bool ascii() const { return format_ == "ascii"; }
+
+    void read_header() {
+        if (word(source_.rest) != "ply") source_.broken("no PLY header");
+        for (std::string_view key; key != "end_header";) {
+            if (source_.rest.empty()) source_.broken("a PLY header without end");
+            std::string_view text = until('\n', source_.rest);
+            key = word(text);
+            if (key == "format" && elements_.empty()) format_ = word(text);
+            if (key == "element") add_element(text);
+            if (key == "property") add_property(text);
+        }
+        std::multiset<std::string_view> needed = {"vertex", "x", "y", "z", "face", "vertex_indices"};
+        if (found_.contains("nx")) needed.insert({"nx", "ny", "nz"});
+        if (found_.contains("tristrips")) source_.broken("triangle strips (tristrips)", "export plain faces");
+        if (!found_.contains("face")) source_.broken("no faces");
+        if (found_ != needed)
+            source_.broken("not just one vertex with x, y, z and one face with vertex_indices");
+        normals_ = found_.contains("nx");
+    }
+
+    void add_element(std::string_view text) {
+        if (!ascii() && format_ != "binary_little_endian" && format_ != "binary_big_endian")
+            source_.broken(fmt::format("the unknown PLY format {}", in_quotes(format_)));
+        const std::string_view name = word(text);
+        const auto count = spelled(word(text));
+        if (!count || !is_whole(*count, 0, std::min(double(source_.rest.size()), 0x7fffffffp0)))
+            source_.broken(fmt::format("an impossible count of the element {} promised", in_quotes(name)));
+        elements_.push_back({name, *count, {}});
+        if (name == "vertex" || name == "face" || name == "tristrips") found_.insert(name);
+    }
+
+    void add_property(std::string_view text) {
+        if (elements_.empty()) source_.broken("a property before any element");
+        Element& element = elements_.back();
+        const std::string_view type = word(text);
+        const Kind* length = type == "list" ? &kind(word(text)) : nullptr;
+        const Kind& of = kind(length ? word(text) : type);
+        const std::string_view name = word(text);
+        const auto column = std::ranges::find(columns, name);
+        int place = other;
+        if (element.name == "face" && length && (name == "vertex_index" || name == "vertex_indices")) {
+            place = corners;
+            found_.insert("vertex_indices");
+        } else if (element.name == "vertex" && !length && column != std::end(columns)) {
+            place = int(column - columns);
+            found_.insert(name);
+            if (place < 3 && of.name == "float" && !ascii()) draft_.single = true;
+        }
+        element.properties.push_back({place, &of, length});
+    }
+
+    const Kind& kind(std::string_view name) const {
+        for (const Kind& k : kinds)
+            if (name == k.name || name == k.other_name) return k;
+        source_.broken(fmt::format("the unknown number type {}", in_quotes(name)));
+    }
+
+    void read_rows(const Element& element) {
+        for (element_ = &element, row_ = 1; row_ <= element.count; ++row_) {
+            std::array<double, 8> values;
+            for (const Property& p : element.properties)
+                if (p.length)
+                    read_list(p);
+                else
+                    values[std::size_t(p.place)] = number(*p.kind);
+            if (element.name != "vertex") continue;
+            draft_.positions.push_back({values[0], values[1], values[2]});
+            if (normals_) draft_.normals.push_back({values[3], values[4], values[5]});
+        }
+    }
+
+    void read_list(const Property& p) {
+        const double length = number(*p.length);
+        if (!is_whole(length, p.place == corners ? 3 : 0, 0xffffffffp0))
+            bad(fmt::format("with {} corners", length));
+        for (double i = 0; i < length; ++i) {
+            const double value = number(*p.kind);
+            if (p.place != corners) continue;
+            if (!is_whole(value, 0, 0x7fffffffp0)) bad(fmt::format("naming vertex {}", value));
+            draft_.corners.push_back(Index(value));
+        }
+        if (p.place == corners) draft_.sizes.push_back(Index(length));
+    }
+
+    double number(const Kind& kind) {
+        const std::string_view text = ascii() ? word(source_.rest) : source_.rest.substr(0, kind.bytes);
+        if (text.size() < (ascii() ? 1 : kind.bytes)) bad("promised, but the file is truncated");
+        if (ascii()) {
+            if (const auto value = spelled(text)) return *value;
+            source_.misspelled(text);
+        }
+        source_.rest.remove_prefix(kind.bytes);
+        return kind.load(text.data(), format_ == "binary_big_endian");
+    }
+
+    [[noreturn]] void bad(std::string_view what) const {
+        source_.broken(fmt::format("{} {} of {} {}", element_->name, row_, element_->count, what));
+    }
+
+    Source source_;
+    std::string_view format_;
+    std::vector<Element> elements_;
+    std::multiset<std::string_view> found_;  // the elements and properties that a mesh has a place for
+    bool normals_ = false;
+    const Element* element_ = nullptr;  // where we are
+    double row_ = 0;
+    Draft draft_;
+};
+
+}  // namespace
+
+Draft read_ply(Source source) { return Ply(std::move(source)).read(); }
+
+}  // namespace palpate

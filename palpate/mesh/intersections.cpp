@@ -1,0 +1,172 @@
+#include "palpate/mesh/intersections.h"
+
+#include "palpate/mesh/repair.h"
+#include "palpate/mesh/tree.h"
+
+#include <array>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+struct Triangle {
+    std::array<dvec3, 3> corners;
+    dvec3 normal;  // of length one; zero if it is flat
+};
+
+Triangle triangle(const Mesh& mesh, Index face) {
+    const uvec3 t = mesh.triangles[face];
+    Triangle result{{dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z])},
+                    dvec3(0)};
+    if (!is_flat(mesh, t))
+        result.normal = glm::normalize(
+            glm::cross(result.corners[1] - result.corners[0], result.corners[2] - result.corners[0]));
+    return result;
+}
+
+// On which side of a face's plane each corner of another lies: 1, -1, or 0 where it as good as touches.
+std::array<int, 3> sides_of(const Triangle& plane, const Triangle& other, double touch) {
+    std::array<int, 3> side{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double height = glm::dot(plane.normal, other.corners[k] - plane.corners[0]);
+        side[k] = height > touch ? 1 : height < -touch ? -1 : 0;
+    }
+    return side;
+}
+
+// Whether the line from p to q passes through the triangle, clear of its sides.
+bool passes(dvec3 p, dvec3 q, const Triangle& through, double touch) {
+    const dvec3 way = q - p;
+    bool left = true, right = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const dvec3 from = through.corners[k], to = through.corners[(k + 1) % 3];
+        const double turn = glm::dot(way, glm::cross(from - p, to - p));
+        const double least = touch * glm::length(glm::cross(way, to - from));  // the lines that far apart
+        left &= turn > least;
+        right &= turn < -least;
+    }
+    return left || right;
+}
+
+bool any_side_passes(const Triangle& from, const std::array<int, 3>& side, const Triangle& through,
+                     double touch) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t next = (k + 1) % 3;
+        if (side[k] * side[next] < 0 && passes(from.corners[k], from.corners[next], through, touch))
+            return true;
+    }
+    return false;
+}
+
+bool one_side_only(const std::array<int, 3>& side) {
+    return std::min({side[0], side[1], side[2]}) >= 0 || std::max({side[0], side[1], side[2]}) <= 0;
+}
+
+bool cut(const Triangle& a, const Triangle& b, double touch) {
+    const std::array<int, 3> of_a = sides_of(b, a, touch), of_b = sides_of(a, b, touch);
+    return (!one_side_only(of_a) && any_side_passes(a, of_a, b, touch)) ||
+           (!one_side_only(of_b) && any_side_passes(b, of_b, a, touch));
+}
+
+bool apart(const Tree::Node& a, const Tree::Node& b) {
+    return glm::any(glm::greaterThan(a.low, b.high)) || glm::any(glm::greaterThan(b.low, a.high));
+}
+
+// Whether all faces of two nodes lie in one plane, where none can cut another.
+bool in_one_plane(const Tree::Plate& a, const Tree::Plate& b, double touch) {
+    if (!(a.thickness + b.thickness <= touch)) return false;
+    const dvec3 normal = glm::normalize(a.area), other = glm::normalize(b.area);
+    const double tilt = glm::length(glm::cross(normal, other)) * b.reach;
+    return tilt + std::abs(glm::dot(normal, b.centre - a.centre)) <= touch;
+}
+
+// Where few faces are in the way, these and `rings` of faces around them.
+void drop_around(Mesh& mesh, const Intersections& found, int rings) {
+    std::vector<char> face(mesh.triangles.size()), vertex(mesh.positions.size());
+    for (uvec2 pair : found.faces) face[pair.x] = face[pair.y] = true;
+    for (int ring = 0; ring < rings; ++ring) {
+        for (std::size_t f = 0; f < face.size(); ++f)
+            for (int k = 0; face[f] && k < 3; ++k) vertex[mesh.triangles[f][k]] = true;
+        for (std::size_t f = 0; f < face.size(); ++f)
+            for (int k = 0; k < 3; ++k) face[f] |= vertex[mesh.triangles[f][k]];
+    }
+    std::size_t f = 0;
+    std::erase_if(mesh.triangles, [&](uvec3) { return face[f++]; });
+}
+
+std::size_t count_faces(const Intersections& found) {
+    std::vector<Index> faces;
+    for (uvec2 pair : found.faces) faces.insert(faces.end(), {pair.x, pair.y});
+    std::sort(faces.begin(), faces.end());
+    return std::size_t(std::unique(faces.begin(), faces.end()) - faces.begin());
+}
+
+}  // namespace
+
+Intersections intersections(const Mesh& mesh, std::size_t most) {
+    const Tree tree(mesh);
+    Intersections found;
+    if (tree.nodes.empty()) return found;
+    const dvec3 size = dvec3(tree.nodes[0].high) - dvec3(tree.nodes[0].low);
+    const double touch = 1e-6 * std::max({size.x, size.y, size.z});
+    std::vector<Triangle> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (Index face : tree.faces) triangles.push_back(triangle(mesh, face));
+
+    const std::vector<Tree::Plate> plates = tree.plates();
+    std::size_t looks = 0;
+    const std::size_t most_looks = 10'000'000 + 100 * mesh.triangles.size();
+    std::vector<uvec2> waiting = {{0, 0}};  // pairs of nodes; a node with itself: all within it
+    while (!waiting.empty()) {
+        const uvec2 pair = waiting.back();
+        waiting.pop_back();
+        const Tree::Node &a = tree.nodes[pair.x], &b = tree.nodes[pair.y];
+        if (apart(a, b) || in_one_plane(plates[pair.x], plates[pair.y], touch)) continue;
+        if (pair.x == pair.y && a.second != 0) {
+            const Index first = pair.x + 1;
+            waiting.insert(waiting.end(), {{first, first}, {a.second, a.second}, {first, a.second}});
+            continue;
+        }
+        if (a.second != 0 && (b.second == 0 || a.count >= b.count)) {
+            waiting.insert(waiting.end(), {{pair.x + 1, pair.y}, {a.second, pair.y}});
+            continue;
+        }
+        if (b.second != 0) {
+            waiting.insert(waiting.end(), {{pair.x, pair.y + 1}, {pair.x, b.second}});
+            continue;
+        }
+        for (Index i = a.first; i < a.first + a.count; ++i)
+            for (Index j = pair.x == pair.y ? i + 1 : b.first; j < b.first + b.count; ++j)
+                if (cut(triangles[i], triangles[j], touch))
+                    found.faces.push_back({tree.faces[i], tree.faces[j]});
+        looks += std::size_t(a.count) * b.count;
+        if (looks > most_looks || found.faces.size() >= most) {
+            found.all = false;
+            break;
+        }
+    }
+    return found;
+}
+
+std::size_t mend_intersections(Mesh& mesh, const Intersections& found) {
+    constexpr double few = 0.05, most_lost = 0.02;  // of the faces; of the volume
+    constexpr int rounds = 4;
+    const std::size_t faces = count_faces(found);
+    if (faces == 0 || double(faces) > few * double(mesh.triangles.size())) return 0;
+    const double before = volume(mesh);
+    Mesh mended{mesh.positions, {}, mesh.triangles};
+    Intersections left = found;
+    for (int round = 1; round <= rounds && !left.faces.empty(); ++round) {
+        drop_around(mended, left, round);
+        close_holes(mended);
+        drop_flaps(mended);
+        part_sheets(mended);
+        left = intersections(mended);
+    }
+    if (!left.faces.empty() || !(std::abs(volume(mended) - before) <= most_lost * std::abs(before))) return 0;
+    drop_unused(mended);
+    mesh = std::move(mended);
+    return faces;
+}
+
+}  // namespace palpate

@@ -1,0 +1,132 @@
+#include "palpate/mesh/parts.h"
+#include "palpate/mesh/repair.h"
+#include "palpate/mesh/winding_number.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+void turn_over(Mesh& mesh, const Parts& part, const std::vector<char>& turn) {
+    for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
+        if (turn[part.of[face]]) std::swap(mesh.triangles[face].y, mesh.triangles[face].z);
+}
+
+std::vector<char> inward(const Mesh& mesh, const Parts& part) {
+    std::vector<char> inward;
+    for (double volume : volumes(mesh, part)) inward.push_back(volume < 0);
+    return inward;
+}
+
+// How many times all others wind around each part, as seen from the middles of a few of its faces; nothing if
+// they do not agree. A look from where another part touches tells nothing and does not count.
+std::vector<std::optional<int>> surroundings(const Mesh& mesh, const Parts& part) {
+    constexpr std::size_t most_looks = 8;
+    const Tree tree(mesh);
+    const WindingNumber all(tree);
+    std::vector<std::vector<Index>> faces(part.count);
+    for (Index face = 0; face < part.of.size(); ++face) faces[part.of[face]].push_back(face);
+    auto corners = [&](Index face) {
+        const uvec3 t = mesh.triangles[face];
+        return std::array{dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z])};
+    };
+    auto around = [&](const std::vector<Index>& own, Index face) {
+        const auto [a, b, c] = corners(face);
+        const dvec3 point = (a + b + c) / 3.0;
+        double others = all.at(point);
+        for (Index f : own) {
+            const auto [u, v, w] = corners(f);
+            others -= solid_angle(point, u, v, w);
+        }
+        return others;
+    };
+    std::vector<std::optional<int>> result;
+    for (const std::vector<Index>& own : faces) {
+        const std::size_t looks = std::min(most_looks, own.size());
+        int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
+        for (std::size_t look = 0; look < looks; ++look) {
+            const double seen = around(own, own[look * own.size() / looks]);
+            const int whole = int(std::lround(seen));
+            if (std::abs(seen - whole) > 0.25) continue;
+            least = std::min(least, whole);
+            most = std::max(most, whole);
+        }
+        result.push_back(most < least    ? std::optional(0)
+                         : most == least ? std::optional(most)
+                                         : std::nullopt);
+    }
+    return result;
+}
+
+// Which parts to turn: those that lie in no other, if they are inside out; and all, if all of these are.
+std::vector<char> wrong_way_out(const Mesh& mesh, const Parts& part) {
+    const std::vector<char> is_inward = inward(mesh, part);
+    if (part.count < 2 || std::count(is_inward.begin(), is_inward.end(), true) == 0) return is_inward;
+    Mesh outward{mesh.positions, {}, mesh.triangles};
+    turn_over(outward, part, is_inward);
+    const std::vector<std::optional<int>> around = surroundings(outward, part);
+    std::vector<char> turn(part.count);
+    bool all = true;
+    for (Index i = 0; i < part.count; ++i) {
+        if (around[i].value_or(0) > 0) continue;
+        turn[i] = is_inward[i];
+        all &= bool(turn[i]);
+    }
+    if (all) turn.assign(part.count, true);
+    return turn;
+}
+
+// Whether each part has inside on one side and outside on the other; `crossing` counts those that have in one
+// place and not in another.
+std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, std::size_t& crossing) {
+    const std::vector<char> is_inward = inward(mesh, part);
+    const std::vector<std::optional<int>> around = surroundings(mesh, part);
+    std::vector<char> does;
+    crossing = 0;
+    for (Index i = 0; i < part.count; ++i) {
+        crossing += !around[i];
+        does.push_back(!around[i] || (is_inward[i] ? *around[i] == 1 : *around[i] <= 0));
+    }
+    return does;
+}
+
+}  // namespace
+
+std::size_t turn_parts(Mesh& mesh) {
+    const Parts part = parts(mesh);
+    const std::vector<char> turn = wrong_way_out(mesh, part);
+    const auto turned = std::size_t(std::count(turn.begin(), turn.end(), true));
+    turn_over(mesh, part, turn);
+    if (turned > 0) drop_attributes(mesh);
+    return turned;
+}
+
+std::size_t drop_nested(Mesh& mesh) {
+    const Parts part = parts(mesh);
+    if (part.count < 2) return 0;
+    std::size_t crossing = 0;
+    return keep_parts(mesh, part, part_inside_from_outside(mesh, part, crossing));
+}
+
+Nesting nesting(const Mesh& mesh) {
+    Nesting found;
+    const Parts part = parts(mesh);
+    const std::vector<char> turn = wrong_way_out(mesh, part);
+    found.inside_out = std::size_t(std::count(turn.begin(), turn.end(), true));
+    if (part.count < 2) return found;
+    Mesh turned{mesh.positions, {}, mesh.triangles};
+    turn_over(turned, part, turn);
+    const std::vector<char> keep = part_inside_from_outside(turned, part, found.crossing),
+                            is_inward = inward(turned, part);
+    for (Index i = 0; i < part.count; ++i) {
+        found.redundant += !keep[i];
+        found.cavities += keep[i] && is_inward[i];
+    }
+    return found;
+}
+
+}  // namespace palpate

@@ -1,0 +1,129 @@
+#include "palpate/mesh/tree.h"
+
+#include "palpate/mesh/triangle.h"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+constexpr Index most_in_a_leaf = 4;
+
+class Halving {
+ public:
+    Halving(const Mesh& mesh, Tree& tree) : mesh_(mesh), tree_(tree) {
+        for (uvec3 t : mesh.triangles)  // three times the middle
+            middles_.push_back(mesh.positions[t.x] / 3.0f + mesh.positions[t.y] / 3.0f +
+                               mesh.positions[t.z] / 3.0f);
+    }
+
+    void halve(Index first, Index count) {
+        const std::size_t here = tree_.nodes.size();
+        Bounds box, middle;
+        for (Index i = first; i < first + count; ++i) {
+            const uvec3 t = mesh_.triangles[tree_.faces[i]];
+            for (int k = 0; k < 3; ++k) box.include(mesh_.positions[t[k]]);
+            middle.include(middles_[tree_.faces[i]]);
+        }
+        tree_.nodes.push_back({box.low, box.high, first, count, 0});
+        if (count <= most_in_a_leaf) return;
+        const vec3 size = middle.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const auto begin = tree_.faces.begin() + first;
+        std::nth_element(begin, begin + count / 2, begin + count,
+                         [&](Index a, Index b) { return middles_[a][axis] < middles_[b][axis]; });
+        halve(first, count / 2);
+        tree_.nodes[here].second = Index(tree_.nodes.size());
+        halve(first + count / 2, count - count / 2);
+    }
+
+ private:
+    const Mesh& mesh_;
+    Tree& tree_;
+    std::vector<vec3> middles_;
+};
+
+float distance_squared(const Tree::Node& node, vec3 p) {
+    const vec3 off = glm::max(glm::max(node.low - p, p - node.high), vec3(0));
+    return glm::dot(off, off);
+}
+
+}  // namespace
+
+Tree::Tree(const Mesh& all) : faces(all.triangles.size()), mesh(all) {
+    std::iota(faces.begin(), faces.end(), Index(0));
+    nodes.reserve(faces.size());
+    if (!faces.empty()) Halving(mesh, *this).halve(0, Index(faces.size()));
+}
+
+std::vector<Tree::Plate> Tree::plates() const {
+    std::vector<Plate> result;
+    result.reserve(nodes.size());
+    for (const Node& node : nodes) {
+        Plate plate{};
+        double size = 0;
+        for (Index i = node.first; i < node.first + node.count; ++i) {
+            const uvec3 t = mesh.triangles[faces[i]];
+            const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+            const dvec3 area = 0.5 * glm::cross(b - a, c - a);
+            plate.area += area;
+            plate.centre += glm::length(area) * (a + b + c) / 3.0;
+            size += glm::length(area);
+        }
+        const dvec3 low(node.low), high(node.high);
+        plate.centre = size > 0 ? plate.centre / size : 0.5 * (low + high);
+        plate.reach = glm::length(glm::max(high - plate.centre, plate.centre - low));
+        plate.thickness = std::numeric_limits<double>::infinity();
+        const double length = glm::length(plate.area);
+        if (length > 0) {
+            plate.thickness = 0;
+            for (Index i = node.first; i < node.first + node.count; ++i)
+                for (int k = 0; k < 3; ++k) {
+                    const dvec3 corner(mesh.positions[mesh.triangles[faces[i]][k]]);
+                    plate.thickness = std::max(
+                        plate.thickness, std::abs(glm::dot(plate.area, corner - plate.centre)) / length);
+                }
+        }
+        result.push_back(plate);
+    }
+    return result;
+}
+
+float Tree::distance(vec3 p, float most) const {
+    struct Wait {
+        Index node;
+        float squared;
+    };
+    float best = most * most;
+    std::vector<Wait> stack;
+    auto push = [&](Index node) {
+        const float squared = distance_squared(nodes[node], p);
+        if (squared < best) stack.push_back({node, squared});
+    };
+    if (!nodes.empty()) push(0);
+    while (!stack.empty()) {
+        const Wait wait = stack.back();
+        stack.pop_back();
+        if (!(wait.squared < best)) continue;
+        const Node& node = nodes[wait.node];
+        if (node.second == 0) {
+            for (Index i = node.first; i < node.first + node.count; ++i) {
+                const uvec3 t = mesh.triangles[faces[i]];
+                const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+                const vec3 weights = nearest_weights(p, a, b, c);
+                const vec3 off = weights.x * a + weights.y * b + weights.z * c - p;
+                best = std::min(best, glm::dot(off, off));
+            }
+            continue;
+        }
+        // The nearer half last, so that it is looked at first.
+        const bool swap = distance_squared(nodes[wait.node + 1], p) < distance_squared(nodes[node.second], p);
+        push(swap ? node.second : wait.node + 1);
+        push(swap ? wait.node + 1 : node.second);
+    }
+    return std::sqrt(best);
+}
+
+}  // namespace palpate

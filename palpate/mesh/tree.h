@@ -1,0 +1,39 @@
+#pragma once
+#include "palpate/mesh/corners.h"
+#include "palpate/mesh/mesh.h"
+
+#include <vector>
+
+namespace palpate {
+
+/// Boxes in boxes over the faces of a mesh, halved by their middles: as deep as the logarithm of their
+/// number, however they lie. A question to many faces is asked of few.
+struct Tree {
+    struct Node {
+        vec3 low, high;
+        Index first, count;  // its faces, in `faces`
+        Index second;        // of two halves the second; the first is the node behind this. 0: not halved
+    };
+    /// A node's faces as seen from afar: a single flat one.
+    struct Plate {
+        dvec3 area;        // normal times area, m²
+        dvec3 centre;      // m
+        double reach;      // m, from the centre to the farthest corner of the node's box, or more
+        double thickness;  // m, how far at most a vertex lies off the plate's plane; infinite if it has none
+    };
+    std::vector<Plate> plates() const;
+
+    std::vector<Node> nodes;   // nodes[0] holds all; none if the mesh has no faces
+    std::vector<Index> faces;  // by node
+
+    /// The mesh must outlive it, unchanged.
+    explicit Tree(const Mesh& mesh);
+
+    /// The distance from a point to the nearest face, or `most` if none is nearer. Any unit, but neither so
+    /// large nor so small that squares of lengths do not fit a float.
+    float distance(vec3 point, float most) const;
+
+    const Mesh& mesh;
+};
+
+}  // namespace palpate

@@ -1,0 +1,79 @@
+#include "palpate/mesh/parts.h"
+#include "palpate/mesh/repair.h"
+
+#include <utility>
+
+namespace palpate {
+namespace {
+
+// For each corner, the corner from which the one other face at this edge begins it, whichever way it runs;
+// none at a border, and where there are more than two.
+std::vector<Index> neighbours(const Mesh& mesh) {
+    std::vector<Index> beyond(3 * mesh.triangles.size(), none);
+    for_each_edge(Corners(mesh), [&](Index low, std::span<const Side> sides) {
+        if (sides.size() != 2 || sides[0].other == low) return;
+        beyond[sides[0].corner] = sides[1].corner;
+        beyond[sides[1].corner] = sides[0].corner;
+    });
+    return beyond;
+}
+
+// Which faces to turn, sheet by sheet, a sheet being what edges with two faces hold together.
+struct Turning {
+    std::vector<char> turn;
+    std::vector<Index> one_sided;  // a face of each sheet in which a walk comes back upside down
+};
+
+Turning find_turning(const Mesh& mesh) {
+    const std::vector<Index> beyond = neighbours(mesh);
+    auto begins = [&](Index corner) { return mesh.triangles[corner / 3][corner % 3]; };
+    Turning result{std::vector<char>(mesh.triangles.size()), {}};
+    std::vector<char> seen(mesh.triangles.size());
+    std::vector<Index> sheet;
+    for (Index first = 0; first < seen.size(); ++first) {
+        if (seen[first]) continue;
+        sheet.assign(1, first);
+        seen[first] = true;
+        bool one_sided = false;
+        std::size_t turned = 0;
+        for (std::size_t i = 0; i < sheet.size(); ++i) {
+            const Index face = sheet[i];
+            for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
+                if (beyond[corner] == none) continue;
+                const Index other = beyond[corner] / 3;
+                const bool clash = begins(corner) == begins(beyond[corner]);
+                const bool turn = bool(result.turn[face]) != clash;
+                if (seen[other]) {
+                    one_sided |= bool(result.turn[other]) != turn;
+                    continue;
+                }
+                seen[other] = true;
+                result.turn[other] = turn;
+                turned += turn;
+                sheet.push_back(other);
+            }
+        }
+        if (one_sided) result.one_sided.push_back(first);
+        if (2 * turned > sheet.size())  // most faces have it right
+            for (Index face : sheet) result.turn[face] ^= 1;
+    }
+    return result;
+}
+
+}  // namespace
+
+std::size_t turn_faces(Mesh& mesh) {
+    const Turning turning = find_turning(mesh);
+    std::size_t turned = 0;
+    for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+        if (!turning.turn[face]) continue;
+        std::swap(mesh.triangles[face].y, mesh.triangles[face].z);
+        ++turned;
+    }
+    if (turned > 0) drop_attributes(mesh);
+    return turned;
+}
+
+std::size_t one_sided_parts(const Mesh& mesh) { return find_turning(mesh).one_sided.size(); }
+
+}  // namespace palpate

@@ -1,0 +1,33 @@
+#pragma once
+#include "palpate/mesh/mesh.h"
+#include "palpate/mesh/tree.h"
+
+#include <vector>
+
+namespace palpate {
+
+/// How many times a surface winds around a point: 1 inside and 0 outside of a closed one; inside two at once
+/// 2; in between near holes, with 0.5 where a patch would best close them. It is the sum over the faces of
+/// the solid angle under which each is seen, over 4 pi (Jacobson et al. 2013). What is far off is seen as a
+/// single small plate, its area and centre those of all its faces (Barill et al. 2018): so a question takes a
+/// time that grows as the logarithm of the mesh. Within 0.05 of
+/// the exact sum, and 0.01 in the mean.
+class WindingNumber {
+ public:
+    /// The tree must outlive this.
+    explicit WindingNumber(const Tree& tree) : tree_(tree), plates_(tree.plates()) {}
+
+    double at(dvec3 point) const;
+
+ private:
+    double look(std::size_t node, dvec3 point) const;
+
+    const Tree& tree_;
+    std::vector<Tree::Plate> plates_;  // one a node of the tree
+};
+
+/// The part of the sphere around `point` that a triangle covers, over 4 pi: positive if its back is seen.
+/// Exact; 0 if the point is one of its corners.
+double solid_angle(dvec3 point, dvec3 a, dvec3 b, dvec3 c);
+
+}  // namespace palpate

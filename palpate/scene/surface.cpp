@@ -1,0 +1,137 @@
+#include "palpate/scene/surface.h"
+
+#include "palpate/base/error.h"
+#include "palpate/mesh/histogram.h"
+#include "palpate/mesh/intersections.h"
+#include "palpate/mesh/isosurface.h"
+#include "palpate/mesh/read.h"
+#include "palpate/mesh/repair.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+// One surface on its way, and where to tell of it.
+struct Work {
+    const BodyRecipe& recipe;
+    const std::filesystem::path& folder;
+    const Progress& progress;
+    CleanSurface result{};
+
+    void tell(const char* doing, double fraction) const {
+        if (progress) progress(recipe.name + ": " + doing, fraction);
+    }
+    void did(const std::string& step) { result.steps.push_back(step); }
+};
+
+const std::string& file_of(const BodyRecipe& recipe) {
+    return recipe.volume.empty() ? recipe.surface : recipe.volume;
+}
+
+// A surface that must enclose nothing: cloth, or what a box carries.
+bool may_be_open(const BodyRecipe& recipe) { return recipe.sheet || recipe.cage; }
+
+float suggested(const Volume& volume, std::vector<std::string>& notes) {
+    const auto iso = suggested_iso(histogram(volume));
+    if (!iso) throw Error("all values alike", volume.name, "give a volume that holds something");
+    notes.push_back(
+        fmt::format("its surface is taken at {}, as its values suggest; iso says otherwise", *iso));
+    return *iso;
+}
+
+Mesh from_volume(Work& work) {
+    const BodyRecipe& recipe = work.recipe;
+    const Volume volume =
+        read_volume(find_data(recipe.volume, work.folder), recipe.units.value_or(Units::millimetres));
+    work.tell("finding the surface", 0.1);
+    const float iso = recipe.iso ? *recipe.iso : suggested(volume, work.result.notes);
+    Mesh mesh = isosurface(volume, iso);
+    work.did(fmt::format("surface at {} of {} x {} x {} voxels: {} faces", iso, volume.dims.x, volume.dims.y,
+                         volume.dims.z, mesh.triangles.size()));
+    return mesh;
+}
+
+Mesh from_file(Work& work) {
+    const BodyRecipe& recipe = work.recipe;
+    Mesh mesh = read_mesh(find_data(recipe.surface, work.folder), recipe.units.value_or(Units::metres),
+                          &work.result.notes);
+    work.did(fmt::format("read {} vertices, {} faces", mesh.positions.size(), mesh.triangles.size()));
+    return mesh;
+}
+
+void mend(Mesh& mesh, Work& work) {
+    const BodyRecipe& recipe = work.recipe;
+    RepairSettings settings = recipe.repair;
+    settings.largest = recipe.largest;
+    settings.sheet = may_be_open(recipe);
+    settings.name = file_of(recipe);
+    for (const Repair& step : repair(mesh, settings)) work.did(fmt::format("{}: {}", step.what, step.count));
+}
+
+void simplify(Mesh& mesh, Work& work) {
+    const BodyRecipe& recipe = work.recipe;
+    if (const int passes = recipe.smooth.value_or(recipe.volume.empty() ? 0 : 10); passes > 0) {
+        smooth(mesh, passes);
+        work.did(fmt::format("smoothed {} times", passes));
+    }
+    if (recipe.faces <= 0) return;
+    const std::size_t went = decimate(mesh, std::size_t(recipe.faces));
+    if (went == 0) return;
+    work.did(fmt::format("simplified away {} faces", went));
+    if (!may_be_open(recipe)) {
+        const std::size_t cut = mend_intersections(mesh, intersections(mesh));
+        if (cut > 0) work.did(fmt::format("faces replaced that cut through each other: {}", cut));
+    }
+    if (recipe.largest) keep_largest(mesh);  // without the crumbs that simplifying may break off
+    if (mesh.triangles.empty()) throw Error("no face is left", file_of(recipe), "ask for more faces");
+}
+
+void place(Mesh& mesh, const BodyRecipe& recipe) {
+    rotate(mesh, recipe.rotate);
+    if (recipe.size > 0) {
+        const vec3 sides = bounds(mesh).size();
+        const float scale = recipe.size / std::max({sides.x, sides.y, sides.z});
+        if (!std::isfinite(scale)) throw Error("a surface without a size", file_of(recipe), "give a mesh");
+        for (vec3& p : mesh.positions) p *= scale;
+    }
+    const vec3 way = recipe.move - (recipe.centre ? bounds(mesh).centre() : vec3(0));
+    for (vec3& p : mesh.positions) p += way;
+}
+
+}  // namespace
+
+CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
+                          const Progress& progress) {
+    Work work{recipe, folder, progress};
+    work.tell("reading", 0);
+    Mesh mesh = recipe.volume.empty() ? from_file(work) : from_volume(work);
+    work.tell("mending the surface", 0.3);
+    mend(mesh, work);
+    work.tell("simplifying the surface", 0.5);
+    simplify(mesh, work);
+    place(mesh, recipe);
+    compute_normals(mesh);
+    const Soundness sound = soundness(mesh);
+    work.did(fmt::format("{} vertices, {} faces, {} parts, {} open edges, {} bad edges",
+                         mesh.positions.size(), mesh.triangles.size(), sound.parts, sound.open_edges,
+                         sound.bad_edges));
+    if (const std::string warning = size_warning(mesh); !warning.empty())
+        work.result.notes.push_back(warning);
+    work.result.mesh = std::move(mesh);
+    return std::move(work.result);
+}
+
+std::string size_warning(const Mesh& surface) {
+    const vec3 size = bounds(surface).size();
+    const float longest = std::max({size.x, size.y, size.z});
+    if (longest > 10) return fmt::format("it is {:.3g} m long; is the unit right?", longest);
+    if (longest < 0.001f) return fmt::format("it is {:.3g} m long; is the unit right?", longest);
+    return {};
+}
+
+}  // namespace palpate

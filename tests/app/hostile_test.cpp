@@ -1,0 +1,350 @@
+// Files as they should not be, given to `palpate import`: each ends within seconds in one clear line, or in a
+// sound solid. Formats have tests of their own; here the whole way from file to solid is walked.
+#include "palpate/base/files.h"
+#include "palpate/mesh/read.h"
+#include "palpate/mesh/repair.h"
+#include "palpate/mesh/write.h"
+#include "tests/app/command.h"
+#include "tests/scratch.h"
+#include "tests/shapes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+namespace palpate {
+namespace {
+
+std::string off(const Mesh& mesh) {
+    std::string text = fmt::format("OFF\n{} {} 0\n", mesh.positions.size(), mesh.triangles.size());
+    for (vec3 p : mesh.positions) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+    for (uvec3 t : mesh.triangles) text += fmt::format("3 {} {} {}\n", t.x, t.y, t.z);
+    return text;
+}
+
+// Coordinates and faces as VRML and X3D list them.
+std::string points(const Mesh& mesh) {
+    std::string text;
+    for (vec3 p : mesh.positions) text += fmt::format("{} {} {}, ", p.x, p.y, p.z);
+    return text;
+}
+std::string faces(const Mesh& mesh) {
+    std::string text;
+    for (uvec3 t : mesh.triangles) text += fmt::format("{} {} {} -1 ", t.x, t.y, t.z);
+    return text;
+}
+
+std::string wrl(const Mesh& mesh) {
+    return fmt::format(
+        "#VRML V2.0 utf8\nShape {{ geometry IndexedFaceSet {{\n coord Coordinate {{ point [ {} ] }}\n"
+        " coordIndex [ {} ] }} }}\n",
+        points(mesh), faces(mesh));
+}
+
+std::string x3d(const Mesh& mesh) {
+    return fmt::format(
+        "<?xml version=\"1.0\"?>\n<X3D version=\"3.0\" profile=\"Interchange\"><Scene><Shape>\n"
+        "<IndexedFaceSet coordIndex=\"{}\"><Coordinate point=\"{}\"/></IndexedFaceSet>\n"
+        "</Shape></Scene></X3D>\n",
+        faces(mesh), points(mesh));
+}
+
+const char* const endings[] = {".ply", ".obj", ".stl", ".off", ".wrl", ".glb", ".gltf", ".x3d"};
+
+enum class End { solid, error };
+
+class Hostile : public ::testing::Test {
+ protected:
+    Scratch scratch;
+
+    // The bytes of a file of this format.
+    std::string file_of(const Mesh& mesh, const std::string& ending) const {
+        if (ending == ".off") return off(mesh);
+        if (ending == ".wrl") return wrl(mesh);
+        if (ending == ".x3d") return x3d(mesh);
+        const auto path = scratch / ("good" + ending);
+        write_mesh(mesh, path);
+        const std::string bytes = read_text(path);
+        std::filesystem::remove(path);
+        return bytes;
+    }
+
+    // How the import of these bytes ended; all that is always true is checked here.
+    End import(const std::string& name, const std::string& bytes, const std::string& more = "") {
+        const auto in = scratch / name, out = scratch / "out.ply";
+        std::ofstream(in, std::ios::binary) << bytes;
+        const Outcome outcome = shell(fmt::format("timeout 20 {} import {} -o {} {}", PALPATE_COMMAND,
+                                                  in.string(), out.string(), more));
+        said = outcome.said;
+        SCOPED_TRACE(name);
+        if (outcome.status != 0) {
+            expect_one_line(outcome, {name, "; "});
+            EXPECT_FALSE(std::filesystem::exists(out));
+        } else {
+            expect_solid(read_mesh(out, Units::metres));
+        }
+        std::filesystem::remove(in);
+        std::filesystem::remove(out);
+        EXPECT_EQ(scratch.entries(), 0u);
+        return outcome.status == 0 ? End::solid : End::error;
+    }
+
+    void expect_error(const std::string& name, const std::string& bytes, const std::string& word = "") {
+        EXPECT_EQ(import(name, bytes), End::error) << name << ": " << said;
+        EXPECT_NE(said.find(word), std::string::npos) << name << ": " << said;
+    }
+    void expect_solid(const std::string& name, const std::string& bytes, const std::string& more = "") {
+        EXPECT_EQ(import(name, bytes, more), End::solid) << name << ": " << said;
+    }
+
+    std::string said;
+
+ private:
+    static void expect_solid(const Mesh& mesh) {
+        for (vec3 p : mesh.positions) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z));
+        for (vec3 n : mesh.normals) ASSERT_NEAR(glm::length(n), 1, 1e-3);
+        const Soundness sound = soundness(mesh);
+        EXPECT_EQ(sound.open_edges, 0u);
+        EXPECT_EQ(sound.bad_edges, 0u);
+        EXPECT_GT(volume(mesh), 0);
+    }
+};
+
+const Mesh ball = ellipsoid({0.03f, 0.04f, 0.05f}, 12);
+
+TEST_F(Hostile, GoodFilesOfAllFormatsAreSolids) {
+    for (const std::string ending : endings) expect_solid("good" + ending, file_of(ball, ending));
+}
+
+TEST_F(Hostile, WhatIsNoFileOfItsFormat) {
+    std::mt19937 random(4);
+    std::string noise(10'000, ' ');
+    for (char& c : noise) c = char(random());
+    for (const std::string ending : endings) {
+        expect_error("empty" + ending, "");
+        expect_error("noise" + ending, noise);
+        expect_error("nul" + ending, std::string(10'000, '\0'));
+        expect_error("words" + ending, "these are words, and no mesh\n");
+        expect_error("newlines" + ending, std::string(10'000, '\n'));
+    }
+}
+
+TEST_F(Hostile, WhatIsCutShort) {
+    for (const std::string ending : endings) {
+        const std::string good = file_of(ball, ending);
+        for (const double part : {0.1, 0.5, 0.93}) {
+            // Of an OBJ or a text that ends after a row, what is left may be whole in itself.
+            const std::string bytes = good.substr(0, std::size_t(double(good.size()) * part));
+            if (import("cut" + ending, bytes) == End::solid)
+                EXPECT_TRUE(ending == ".obj") << ending << " " << part;
+        }
+    }
+}
+
+TEST_F(Hostile, ABitTurnedHereAndThere) {
+    std::mt19937 random(5);
+    for (const std::string ending : endings) {
+        const std::string good = file_of(ball, ending);
+        for (int i = 0; i < 6; ++i) {
+            std::string bytes = good;
+            for (int flips = 1 + i; flips > 0; --flips)
+                bytes[random() % bytes.size()] ^= char(1 << random() % 8);
+            import("bits" + ending, bytes);
+        }
+    }
+}
+
+std::string ply(const std::string& vertices, const std::string& faces, const std::string& rows) {
+    return "ply\nformat ascii 1.0\nelement vertex " + vertices +
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+           "\nproperty list uchar int vertex_indices\nend_header\n" + rows;
+}
+
+TEST_F(Hostile, CountsThatLie) {
+    expect_error("faces.ply", ply("3", "4294967296", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+    expect_error("vertices.ply", ply("4294967295", "1", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+    expect_error("corners.ply", ply("3", "1", "0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n"));
+    expect_error("faces.off", "OFF\n3 4294967296 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    expect_error("vertices.off", "OFF\n4294967296 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    std::string stl(80, ' ');
+    stl += std::string("\xff\xff\xff\xff", 4) + std::string(500, 'x');
+    expect_error("faces.stl", stl);
+    std::string glb = file_of(ball, ".glb");
+    glb.replace(12, 4, "\xf0\xff\xff\xff");  // the length of its first chunk
+    expect_error("length.glb", glb);
+    std::string gltf = file_of(ball, ".gltf");
+    const std::size_t count = gltf.find("\"count\":");
+    ASSERT_NE(count, std::string::npos);
+    gltf.insert(count + 8, "4294967");
+    expect_error("count.gltf", gltf);
+}
+
+TEST_F(Hostile, NumbersThatAreNone) {
+    const std::string face = "f 1 2 3\n";
+    for (const std::string bad : {"nan", "inf", "-Infinity", "1e39", "1,5", "0x1p3", "one", "1.2.3"}) {
+        expect_error("number.obj", "v 0 0 0\nv 1 0 0\nv 0 " + bad + " 0\n" + face);
+        expect_error("number.ply", ply("3", "1", "0 0 0\n1 0 0\n0 " + bad + " 0\n3 0 1 2\n"));
+        expect_error("number.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 " + bad + " 0\n3 0 1 2\n");
+        expect_error("number.stl",
+                     "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 " + bad +
+                         " 0\nendloop\nendfacet\nendsolid a\n");
+        expect_error(
+            "number.wrl",
+            "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0 1 0 0 0 " +
+                bad + " 0 ] } coordIndex [ 0 1 2 -1 ] } }\n");
+    }
+    expect_error("comma.obj", "v 0,0 0,0 0,0\nv 1,5 0,0 0,0\nv 0,0 1,5 0,0\n" + face, "decimal comma");
+}
+
+TEST_F(Hostile, FacesOfNoVertex) {
+    for (const char* corner : {"0", "4", "-4", "99999999999", "1.5", "x"})
+        expect_error("corner.obj", fmt::format("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {}\n", corner));
+    for (const char* corner : {"-1", "3", "4294967295", "1.5", "x"}) {
+        expect_error("corner.ply", ply("3", "1", fmt::format("0 0 0\n1 0 0\n0 1 0\n3 0 1 {}\n", corner)));
+        expect_error("corner.off", fmt::format("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 {}\n", corner));
+        expect_error("corner.wrl", fmt::format("#VRML V2.0 utf8\nShape {{ geometry IndexedFaceSet {{ coord "
+                                               "Coordinate {{ point [ 0 0 0 1 0 0 0 1 0 ] }} coordIndex "
+                                               "[ 0 1 {} ] }} }}\n",
+                                               corner));
+    }
+}
+
+// ---- shapes that are no solid ----
+
+std::string obj(const std::vector<dvec3>& positions, const std::vector<std::vector<int>>& faces) {
+    std::string text;
+    for (dvec3 p : positions) text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+    for (const std::vector<int>& face : faces) {
+        text += "f";
+        for (const int corner : face) text += fmt::format(" {}", corner + 1);
+        text += "\n";
+    }
+    return text;
+}
+
+std::string obj(const Mesh& mesh, double size = 1, dvec3 move = dvec3(0)) {
+    std::vector<dvec3> positions;
+    for (vec3 p : mesh.positions) positions.push_back(size * dvec3(p) + move);
+    std::vector<std::vector<int>> faces;
+    for (uvec3 t : mesh.triangles) faces.push_back({int(t.x), int(t.y), int(t.z)});
+    return obj(positions, faces);
+}
+
+TEST_F(Hostile, WhatHasNoInside) {
+    const std::vector<std::vector<int>> three{{0, 1, 2}}, four{{0, 1, 2}, {1, 3, 2}};
+    expect_error("triangle.obj", obj({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, three));
+    expect_error("line.obj", obj({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, four));
+    expect_error("point.obj", obj({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, four));
+    std::vector<dvec3> sheet;
+    std::vector<std::vector<int>> quads;
+    for (int j = 0; j < 30; ++j)
+        for (int i = 0; i < 30; ++i) {
+            sheet.push_back({0.01 * i, 0.01 * j, 0});
+            if (i > 0 && j > 0)
+                quads.push_back({30 * j + i - 31, 30 * j + i - 30, 30 * j + i, 30 * j + i - 1});
+        }
+    expect_error("sheet.obj", obj(sheet, quads));
+    std::vector<dvec3> band;
+    quads.clear();
+    for (int i = 0; i < 60; ++i) {
+        const double turn = 2 * M_PI * i / 60;
+        for (const double side : {-0.02, 0.02}) {
+            const double way = 0.1 + side * std::cos(turn / 2);
+            band.push_back({way * std::cos(turn), way * std::sin(turn), side * std::sin(turn / 2)});
+        }
+        const int a = 2 * i, c = (a + 2) % 120;
+        quads.push_back(i < 59 ? std::vector{a, a + 1, c + 1, c} : std::vector{a, a + 1, 0, 1});
+    }
+    expect_error("moebius.obj", obj(band, quads));
+}
+
+TEST_F(Hostile, SizesAndPlacesFarFromAnyBody) {
+    for (const double size : {1e-20, 1e-6, 1e6, 1e30}) expect_solid("size.obj", obj(ball, size));
+    const double millimetre = 0.01;  // of a ball 100 mm long
+    expect_solid("far.obj", obj(ball, millimetre, {1e6, -1e6, 1e6}));
+    EXPECT_NE(said.find("note: "), std::string::npos) << said;
+}
+
+TEST_F(Hostile, AFanOfFiveThousandFacesAndAPolygonOfTwoHundredThousandCorners) {
+    const auto ring = [](int n, double z) {
+        std::vector<dvec3> points;
+        for (int i = 0; i < n; ++i)
+            points.push_back({0.1 * std::cos(2 * M_PI * i / n), 0.1 * std::sin(2 * M_PI * i / n), z});
+        return points;
+    };
+    std::vector<dvec3> cone = ring(5000, 0);
+    cone.push_back({0, 0, 0.1});
+    std::vector<std::vector<int>> faces(1);
+    for (int i = 0; i < 5000; ++i) {
+        faces[0].insert(faces[0].begin(), i);
+        faces.push_back({i, (i + 1) % 5000, 5000});
+    }
+    expect_solid("fan.obj", obj(cone, faces));
+
+    constexpr int n = 200'000;
+    std::vector<dvec3> drum = ring(n, 0), top = ring(n, 0.1);
+    drum.insert(drum.end(), top.begin(), top.end());
+    faces.assign(2, {});
+    for (int i = 0; i < n; ++i) {
+        faces[0].push_back(n - 1 - i);
+        faces[1].push_back(n + i);
+        faces.push_back({i, (i + 1) % n, n + (i + 1) % n, n + i});
+    }
+    expect_solid("drum.obj", obj(drum, faces));
+}
+
+// ---- volumes ----
+
+std::string nrrd(const std::string& sizes, const std::string& type, const std::string& data,
+                 const std::string& more = "") {
+    return "NRRD0004\ntype: " + type + "\ndimension: 3\nsizes: " + sizes +
+           "\nendian: little\nencoding: raw\n" + more + "\n" + data;
+}
+
+std::string mha(const std::string& sizes, const std::string& data, const std::string& more = "") {
+    return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nDimSize = " +
+           sizes + "\n" + more + "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + data;
+}
+
+// A ball of 200 in a box of 10, 16 voxels wide.
+std::string voxels() {
+    std::string bytes;
+    for (int z = 0; z < 16; ++z)
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x) bytes += char(glm::length(dvec3(x, y, z) - 7.5) < 5 ? 200 : 10);
+    return bytes;
+}
+
+TEST_F(Hostile, Volumes) {
+    const std::string good = voxels();
+    expect_solid("good.nrrd", nrrd("16 16 16", "uint8", good));
+    expect_solid("good.mha", mha("16 16 16", good));
+    expect_error("terabyte.nrrd", nrrd("10000 10000 10000", "uint8", good));
+    expect_error("terabyte.mha", mha("10000 10000 10000", good));
+    for (const std::string ending : {".nrrd", ".mha", ".nii", ".nii.gz", ".dcm"}) {
+        expect_error("empty" + ending, "");
+        expect_error("noise" + ending, good);
+        expect_error("nul" + ending, std::string(10'000, '\0'));
+    }
+    expect_error("cut.nrrd", nrrd("16 16 16", "uint8", good.substr(0, 3000)));
+    expect_error("cut.mha", mha("16 16 16", good.substr(0, 3000)));
+    expect_error("zero.nrrd", nrrd("0 16 16", "uint8", good));
+    expect_error("negative.mha", mha("-16 16 16", good));
+    expect_error("nan.nrrd", nrrd("8 8 8", "float", std::string(2048, '\xff')));
+    expect_error("spacing.mha", mha("16 16 16", good, "ElementSpacing = 0 1 nan\n"));
+    expect_error("flat.nrrd", nrrd("16 16 16", "uint8", std::string(4096, 'x')));
+}
+
+TEST_F(Hostile, NothingOfThisTookMuchMemory) {
+    for (const std::string ending : endings) import("good" + ending, file_of(ball, ending));
+    rusage used{};
+    getrusage(RUSAGE_CHILDREN, &used);  // of the greediest of all the commands so far
+    EXPECT_LT(used.ru_maxrss / 1024, 600) << "MB";
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,69 @@
+#include "palpate/base/isolated.h"
+
+#include "palpate/base/error.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+std::string complaint(const Allowance& allowance, const std::function<void(std::FILE*)>& work) {
+    try {
+        isolated("the library", "a file", allowance, work);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+TEST(Isolated, HandsOnWhatWasWritten) {
+    std::string text;
+    for (unsigned i = 0; i < 300'007; ++i) text += char(i * i % 251);
+    const Written written = isolated("the library", "a file", {},
+                                     [&](std::FILE* out) { std::fwrite(text.data(), 1, text.size(), out); });
+    EXPECT_EQ(std::string(written.bytes().begin(), written.bytes().end()), text);
+    EXPECT_TRUE(isolated("the library", "a file", {}, [](std::FILE*) {}).bytes().empty());
+}
+
+TEST(Isolated, AnErrorComesThroughAsItIs) {
+    const std::string said = complaint({}, [](std::FILE* out) {
+        std::fputs("half of the work, longer than the complaint that follows it", out);
+        throw Error("no faces", "x.ply", "export it again");
+    });
+    EXPECT_EQ(said, "no faces in x.ply; export it again");
+}
+
+TEST(Isolated, ACrashAHangAndGreedEndOnlyTheCopy) {
+    EXPECT_EQ(complaint({}, [](std::FILE*) { std::raise(SIGKILL); }),
+              "the library crashed on what is in a file; convert it with another program");
+    EXPECT_EQ(complaint({.seconds = 0.2},
+                        [](std::FILE*) {
+                            for (;;) pause();
+                        }),
+              "the library is not done after 0.2 s with what is in a file; convert it with another program");
+#ifndef __SANITIZE_ADDRESS__
+    EXPECT_EQ(complaint({.bytes = 64 << 20},
+                        [](std::FILE* out) {
+                            std::vector<std::vector<char>> all;
+                            for (;;) std::fputc(all.emplace_back(1 << 20, 'x')[7], out);
+                        }),
+              "the library wants more than 64 MB for what is in a file; convert it with another program");
+#endif
+}
+
+TEST(Isolated, LeavesNoProcessAndSharesNoState) {
+    int touched = 0;
+    isolated("the library", "a file", {}, [&](std::FILE*) { touched = 1; });
+    EXPECT_EQ(touched, 0);
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+    EXPECT_EQ(errno, ECHILD);
+}
+
+}  // namespace
+}  // namespace palpate

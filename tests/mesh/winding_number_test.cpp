@@ -1,0 +1,100 @@
+#include "palpate/mesh/winding_number.h"
+
+#include "tests/mesh/shapes.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+double exact(const Mesh& mesh, dvec3 point) {
+    double sum = 0;
+    for (uvec3 t : mesh.triangles)
+        sum += solid_angle(point, dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]),
+                           dvec3(mesh.positions[t.z]));
+    return sum;
+}
+
+// Points in and around the box from -2 to 2.
+std::vector<dvec3> points(int count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-2, 2);
+    std::vector<dvec3> result;
+    for (int i = 0; i < count; ++i) result.emplace_back(any(random), any(random), any(random));
+    return result;
+}
+
+TEST(SolidAngle, OfACubesFaceFromItsMiddle) {
+    const double half = 0.5;
+    const double sum =
+        solid_angle(dvec3(0), dvec3(-half, -half, half), dvec3(half, -half, half), dvec3(half, half, half));
+    EXPECT_NEAR(sum, 1.0 / 12, 1e-15);
+    EXPECT_EQ(solid_angle(dvec3(1, 0, 0), dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)), 0);
+}
+
+TEST(WindingNumber, OfClosedSurfacesIsWhole) {
+    const Mesh nested = both(sphere(vec3(0), 1.5f, 5), sphere(vec3(0.1f), 1, 4));
+    const Tree tree(nested);
+    const WindingNumber winding(tree);
+    for (dvec3 p : points(2000, 1)) {
+        const double outer = glm::length(p) - 1.5, inner = glm::distance(p, dvec3(0.1)) - 1;
+        if (std::abs(outer) < 0.01 || std::abs(inner) < 0.01) continue;
+        const double expected = (outer < 0) + (inner < 0);
+        EXPECT_TRUE(std::abs(winding.at(p) - expected) <= 0.05) << winding.at(p) << " for " << expected;
+    }
+}
+
+TEST(WindingNumber, IsNearTheExactSumForAnyTriangles) {
+    for (unsigned seed = 0; seed < 6; ++seed) {
+        // Open, one-sided, closed, and a soup of faces anywhere.
+        Mesh mesh = seed == 0 ? band(0.8f, 1, 200) : seed == 1 ? torus(1.2f, 0.5f, 90, 40) : Mesh{};
+        if (seed > 1) {
+            std::mt19937 random(seed);
+            std::normal_distribution<float> any(0, 1);
+            for (unsigned i = 0; i < 300 * seed; ++i) {
+                const vec3 at(any(random), any(random), any(random));
+                for (int k = 0; k < 3; ++k)
+                    mesh.positions.push_back(at + 0.2f * vec3(any(random), any(random), any(random)));
+                mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+            }
+        }
+        const Tree tree(mesh);
+        const WindingNumber winding(tree);
+        double squares = 0;
+        const std::vector<dvec3> all = points(400, seed);
+        for (dvec3 p : all) {
+            const double error = winding.at(p) - exact(mesh, p);
+            EXPECT_TRUE(std::abs(error) <= 0.05) << error;
+            squares += error * error;
+        }
+        EXPECT_TRUE(std::sqrt(squares / double(all.size())) <= 0.01);
+    }
+}
+
+TEST(WindingNumber, DoesNotMindSize) {
+    for (float scale : {1e-20f, 1e30f}) {
+        Mesh mesh = sphere(vec3(0), 1, 4);
+        for (vec3& p : mesh.positions) p *= scale;
+        const Tree tree(mesh);
+        const WindingNumber winding(tree);
+        EXPECT_TRUE(std::abs(winding.at(dvec3(0.3 * double(scale))) - 1) <= 0.02);
+        EXPECT_TRUE(std::abs(winding.at(dvec3(0.8 * double(scale)))) <= 0.02);
+    }
+    const Mesh nothing;
+    const Tree tree(nothing);
+    EXPECT_EQ(WindingNumber(tree).at(dvec3(0)), 0);
+}
+
+TEST(Tree, FindsTheNearestFace) {
+    const Mesh mesh = torus(1.2f, 0.5f, 50, 31);
+    const Tree tree(mesh);
+    for (dvec3 p : points(2000, 9)) {
+        const double exact = std::abs(std::hypot(std::hypot(p.x, p.y) - 1.2, p.z) - 0.5);
+        const double found = double(tree.distance(vec3(p), 10));
+        EXPECT_TRUE(std::abs(found - exact) <= 0.01) << found << " for " << exact;
+        EXPECT_EQ(tree.distance(vec3(p), 0.25f), std::min(float(found), 0.25f));
+    }
+}
+
+}  // namespace
+}  // namespace palpate
