@@ -98,7 +98,7 @@ void add_import(CLI::App& app) {
     command->add_option(
         "--solid", arguments->solid,
         "how it becomes a solid: walls (mended; by voxels where that fails) or voxels [walls]");
-    command->add_option("--voxel", recipe.repair.voxel, "m: of what voxels make [1/200 of its longest side]")
+    command->add_option("--voxel", recipe.repair.voxel, "m: of what voxels make [1/300 of its longest side]")
         ->check(CLI::NonNegativeNumber);
     command->add_option("--report", arguments->report, "write what was done, JSON");
     command->add_option("--rotate", arguments->rotate, "degrees about x, y, z")

@@ -14,6 +14,7 @@ palpate_needs(ZLIB)
 palpate_needs(assimp)
 palpate_needs(meshoptimizer)
 palpate_needs(ITK 5 COMPONENTS ${palpate_itk})
+palpate_needs(TBB)
 palpate_needs(OpenVDB)
 
 # gl

@@ -5,13 +5,14 @@
 #include "palpate/mesh/winding_number.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 
 namespace palpate {
 namespace {
 
-constexpr float default_voxels = 200;    // along the longest side
+constexpr float default_voxels = 300;    // along the longest side
 constexpr double most_voxels = 1 << 28;  // 1 GB
 constexpr int margin = 3;                // voxels of outside all around
 constexpr float band = 2;                // voxels; distances beyond this are cut off
@@ -23,26 +24,36 @@ class Depths {
  public:
     Depths(const Mesh& mesh, Volume& volume) : tree_(mesh), winding_(tree_), volume_(volume) {}
 
-    // `sign`: of all the block's depths, if it is known.
-    void fill(ivec3 low, int size, float sign = 0) {
-        const ivec3 high = glm::min(low + size, volume_.dims);
-        if (glm::any(glm::lessThanEqual(high, low))) return;
-        const vec3 centre = vec3(low) + 0.5f * float(size - 1);
-        if (size == 1) {
-            at(low) = sign != 0 ? sign * depth_of(distance(centre, 0)) : depth(centre);
-            return;
-        }
-        const float reach = 0.5f * std::sqrt(3.0f) * float(size - 1);
-        const float clear = distance(centre, 2 * reach);
-        if (sign == 0 && clear > reach) sign = decided(winding_.at(dvec3(centre)), double(reach / clear));
-        if (clear > reach + band) {
-            if (sign == 0 && size > 2) sign = agreed(low, high - 1);
-            if (sign != 0) return fill_with(sign * band, low, high);
-        }
-        for (int i = 0; i < 8; ++i) fill(low + size / 2 * ivec3(i & 1, i >> 1 & 1, i >> 2), size / 2, sign);
-    }
+    void fill(ivec3 low, int size) { fill(low, size, 0, winding_.ball(middle(low, size), reach(size))); }
 
  private:
+    using Ball = WindingNumber::Ball;
+
+    static dvec3 middle(ivec3 low, int size) { return dvec3(low) + 0.5 * (size - 1); }
+    static double reach(int size) { return 0.5 * std::sqrt(3.0) * (size - 1); }
+
+    // `sign`: of all the block's depths, if it is known, else 0. `ball`: around the block.
+    void fill(ivec3 low, int size, float sign, const Ball& ball) {
+        const ivec3 high = glm::min(low + size, volume_.dims);
+        const double clear = double(distance(vec3(ball.centre), 2 * float(ball.radius)));
+        if (sign == 0 && clear > ball.radius)
+            sign = decided(winding_.at(ball.centre, ball), ball.radius / clear);
+        if (clear > ball.radius + double(band)) {
+            if (sign == 0 && size > 2) sign = agreed(low, high - 1, ball);
+            if (sign != 0) return fill_with(sign * band, low, high);
+        }
+        const int half = size / 2;
+        for (int i = 0; i < 8; ++i) {
+            const ivec3 part = low + half * ivec3(i & 1, i >> 1 & 1, i >> 2);
+            if (glm::any(glm::greaterThanEqual(part, volume_.dims))) continue;
+            if (half == 1)
+                at(part) = sign != 0 ? sign * depth_of(distance(part, 0)) : depth(part, ball);
+            else
+                fill(part, half, sign, sign != 0 ? Ball{middle(part, half), reach(half)}
+                                                 : winding_.ball(middle(part, half), reach(half), ball));
+        }
+    }
+
     float& at(ivec3 p) {
         return volume_.values[(std::size_t(p.z) * volume_.dims.y + p.y) * volume_.dims.x + p.x];
     }
@@ -66,12 +77,12 @@ class Depths {
     // The same for a block clear of the surface whose corners are all well on one side: within it a harmonic
     // function is nowhere more extreme than on its border, and changes little over the distance to the
     // surface.
-    float agreed(ivec3 low, ivec3 high) const {
+    float agreed(ivec3 low, ivec3 high, const Ball& ball) const {
         constexpr double well = 0.02;
         int inside = 0, outside = 0;
         for (int i = 0; i < 8; ++i) {
             const ivec3 corner = glm::mix(low, high, glm::bvec3(i & 1, i & 2, i & 4));
-            const double winding = winding_.at(dvec3(corner));
+            const double winding = winding_.at(dvec3(corner), ball);
             inside += winding > 0.5 + well;
             outside += winding < 0.5 - well;
         }
@@ -85,8 +96,8 @@ class Depths {
 
     // The distance to the surface, negative outside. Across a hole, where there is no surface, the winding
     // number falls smoothly past one half: a distance is made of it that is the smaller only there.
-    float depth(vec3 p) const {
-        const float across = hole_slope * float(winding_.at(dvec3(p)) - 0.5);
+    float depth(vec3 p, const Ball& ball) const {
+        const float across = hole_slope * float(winding_.at(dvec3(p), ball) - 0.5);
         return std::copysign(depth_of(std::min(distance(p, 0), std::abs(across))), across);
     }
 
@@ -126,10 +137,12 @@ Mesh remake(const Mesh& mesh, float voxel, const std::string& name, const Progre
     for (vec3& p : small.positions) p = vec3((dvec3(p) - origin) / unit);
     Depths filler(small, depths);
     constexpr int block = 32;
-    for (int z = 0; z < depths.dims.z; z += block) {
-        if (progress) progress("making a solid by voxels", double(z) / depths.dims.z);
-        for (int y = 0; y < depths.dims.y; y += block)
-            for (int x = 0; x < depths.dims.x; x += block) filler.fill({x, y, z}, block);
+    const ivec3 blocks = (depths.dims + block - 1) / block;
+    for (int z = 0; z < blocks.z; ++z) {
+        if (progress) progress("making a solid by voxels", double(z) / blocks.z);
+        tbb::parallel_for(0, blocks.y * blocks.x, [&](int i) {
+            filler.fill(block * ivec3(i % blocks.x, i / blocks.x, z), block);
+        });
     }
 
     // A sheet has points inside by rounding at most.

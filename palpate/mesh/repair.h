@@ -25,7 +25,7 @@ struct RepairSettings {
     bool largest = false;  // keep only the part with the most faces
     bool sheet = false;    // a cloth: may stay open, is neither closed nor made by voxels
     SolidBy solid = SolidBy::walls;  // ignored for a sheet
-    float voxel = 0;                 // m; for what voxels make. 0: 1/200 of the longest side
+    float voxel = 0;                 // m; for what voxels make. 0: 1/300 of the longest side
     std::string name = "the mesh";   // what errors call it
 };
 

@@ -10,17 +10,32 @@ namespace palpate {
 /// 2; in between near holes, with 0.5 where a patch would best close them. It is the sum over the faces of
 /// the solid angle under which each is seen, over 4 pi (Jacobson et al. 2013). What is far off is seen as a
 /// single small plate, its area and centre those of all its faces (Barill et al. 2018): so a question takes a
-/// time that grows as the logarithm of the mesh. Within 0.05 of
-/// the exact sum, and 0.01 in the mean.
+/// time that grows as the logarithm of the mesh. Within 0.05 of the exact sum, and 0.01 in the mean.
 class WindingNumber {
  public:
     /// The tree must outlive this.
     explicit WindingNumber(const Tree& tree) : tree_(tree), plates_(tree.plates()) {}
 
-    double at(dvec3 point) const;
+    double at(dvec3 point) const { return tree_.nodes.empty() ? 0 : look(0, point); }
+
+    /// A ball in which many points will be asked for. What is far from it is summed once and for all, as a
+    /// value and a slope; what is near is still to be looked at from each point.
+    struct Ball {
+        dvec3 centre{0};
+        double radius = 0;
+        double value = 0;         // of what is far, at the centre
+        dvec3 slope{0};           // of that value, 1/m
+        std::vector<Index> near{};  // nodes of the tree
+    };
+    Ball ball(dvec3 centre, double radius) const;
+    Ball ball(dvec3 centre, double radius, const Ball& around) const;  // from a larger one that holds it
+
+    /// The same as at(point), to the same accuracy, for a point in the ball.
+    double at(dvec3 point, const Ball& ball) const;
 
  private:
     double look(std::size_t node, dvec3 point) const;
+    void gather(Index node, Ball& ball) const;
 
     const Tree& tree_;
     std::vector<Tree::Plate> plates_;  // one a node of the tree
