@@ -44,12 +44,13 @@ std::vector<Ailment> ailments(const Soundness& sound, const Nesting& nested, std
             {"cutting_faces", cuts, "pairs of faces that cut through each other"}};
 }
 
-std::string verdict(const std::vector<Ailment>& all, double volume) {
+std::string verdict(const std::vector<Ailment>& all, double volume, bool searched) {
     std::string found;
     for (const Ailment& one : all)
         if (one.name && one.count > 0)
             found += fmt::format("{}{} {}", found.empty() ? "" : ", ", one.count, one.name);
-    if (found.empty() && volume > 0) return "a solid";
+    if (found.empty() && volume > 0)
+        return searched ? "a solid" : "a solid, but for faces too crowded to be searched for cuts";
     if (found.empty()) found = "it encloses nothing";
     return "no solid: " + found + "; palpate import mends what can be mended";
 }
@@ -66,10 +67,11 @@ Json describe(const Mesh& mesh) {
                   {"high_m", list(box.empty() ? vec3(0) : box.high)},
                   {"volume_m3", volume(mesh)},
                   {"euler", sound.euler}};
-    const std::vector<Ailment> all = ailments(sound, nesting(mesh), intersections(mesh).faces.size());
+    const Intersections cuts = intersections(mesh);
+    const std::vector<Ailment> all = ailments(sound, nesting(mesh), cuts.faces.size());
     for (const Ailment& one : all) about[one.key] = one.count;
     about["longest_hole_m"] = sound.longest_hole;
-    about["verdict"] = verdict(all, volume(mesh));
+    about["verdict"] = verdict(all, volume(mesh), cuts.all);
     return about;
 }
 

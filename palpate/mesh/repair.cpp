@@ -174,7 +174,9 @@ std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps)
     steps.add("faces dropped that lay back to back", drop_flaps(mesh));
     steps.add("vertices added to part what only touches", part_sheets(mesh));
     settle(mesh, settings, steps);
-    if (const Intersections cuts = intersections(mesh); !cuts.faces.empty()) {
+    const Intersections cuts = intersections(mesh);
+    if (!cuts.all) steps.add("faces too crowded to be searched for cuts", mesh.triangles.size());
+    if (!cuts.faces.empty()) {
         const std::size_t mended = mend_intersections(mesh, cuts);
         if (mended == 0)
             return fmt::format("{}{} pairs of faces cut through each other", cuts.all ? "" : "over ",

@@ -23,7 +23,7 @@ struct Work {
     const Progress& progress;
     CleanSurface result{};
 
-    void tell(const char* doing, double fraction) const {
+    void tell(const std::string& doing, double fraction) const {
         if (progress) progress(recipe.name + ": " + doing, fraction);
     }
     void did(const std::string& step) { result.steps.push_back(step); }
@@ -64,13 +64,27 @@ Mesh from_file(Work& work) {
     return mesh;
 }
 
+// By how much `size` will scale the mesh.
+float scale_of(const Mesh& mesh, const BodyRecipe& recipe) {
+    const vec3 sides = bounds(mesh).size();
+    return recipe.size > 0 ? recipe.size / std::max({sides.x, sides.y, sides.z}) : 1;
+}
+
 void mend(Mesh& mesh, Work& work) {
     const BodyRecipe& recipe = work.recipe;
     RepairSettings settings = recipe.repair;
+    if (const float scale = scale_of(mesh, recipe); scale > 0 && std::isfinite(scale)) {
+        settings.weld /= scale;
+        settings.voxel /= scale;
+    }
     settings.largest = recipe.largest;
     settings.sheet = may_be_open(recipe);
     settings.name = file_of(recipe);
-    for (const Repair& step : repair(mesh, settings)) work.did(fmt::format("{}: {}", step.what, step.count));
+    const Progress tell = [&](std::string_view doing, double done) {
+        work.tell(std::string(doing), 0.3 + 0.2 * done);
+    };
+    for (const Repair& step : repair(mesh, settings, tell))
+        work.did(fmt::format("{}: {}", step.what, step.count));
 }
 
 void simplify(Mesh& mesh, Work& work) {
@@ -93,12 +107,9 @@ void simplify(Mesh& mesh, Work& work) {
 
 void place(Mesh& mesh, const BodyRecipe& recipe) {
     rotate(mesh, recipe.rotate);
-    if (recipe.size > 0) {
-        const vec3 sides = bounds(mesh).size();
-        const float scale = recipe.size / std::max({sides.x, sides.y, sides.z});
-        if (!std::isfinite(scale)) throw Error("a surface without a size", file_of(recipe), "give a mesh");
-        for (vec3& p : mesh.positions) p *= scale;
-    }
+    const float scale = scale_of(mesh, recipe);
+    if (!std::isfinite(scale)) throw Error("a surface without a size", file_of(recipe), "give a mesh");
+    for (vec3& p : mesh.positions) p *= scale;
     const vec3 way = recipe.move - (recipe.centre ? bounds(mesh).centre() : vec3(0));
     for (vec3& p : mesh.positions) p += way;
 }
@@ -110,7 +121,6 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
     Work work{recipe, folder, progress};
     work.tell("reading", 0);
     Mesh mesh = recipe.volume.empty() ? from_file(work) : from_volume(work);
-    work.tell("mending the surface", 0.3);
     mend(mesh, work);
     work.tell("simplifying the surface", 0.5);
     simplify(mesh, work);
