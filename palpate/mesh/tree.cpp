@@ -2,6 +2,8 @@
 
 #include "palpate/mesh/triangle.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -59,36 +61,36 @@ Tree::Tree(const Mesh& all) : faces(all.triangles.size()), mesh(all) {
 }
 
 std::vector<Tree::Plate> Tree::plates() const {
-    std::vector<Plate> result;
-    result.reserve(nodes.size());
-    for (const Node& node : nodes) {
-        Plate plate{};
-        double size = 0;
-        for (Index i = node.first; i < node.first + node.count; ++i) {
-            const uvec3 t = mesh.triangles[faces[i]];
-            const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-            const dvec3 area = 0.5 * glm::cross(b - a, c - a);
-            plate.area += area;
-            plate.centre += glm::length(area) * (a + b + c) / 3.0;
-            size += glm::length(area);
-        }
-        const dvec3 low(node.low), high(node.high);
-        plate.centre = size > 0 ? plate.centre / size : 0.5 * (low + high);
-        plate.reach = glm::length(glm::max(high - plate.centre, plate.centre - low));
-        plate.thickness = std::numeric_limits<double>::infinity();
-        const double length = glm::length(plate.area);
-        if (length > 0) {
-            plate.thickness = 0;
-            for (Index i = node.first; i < node.first + node.count; ++i)
-                for (int k = 0; k < 3; ++k) {
-                    const dvec3 corner(mesh.positions[mesh.triangles[faces[i]][k]]);
-                    plate.thickness = std::max(
-                        plate.thickness, std::abs(glm::dot(plate.area, corner - plate.centre)) / length);
-                }
-        }
-        result.push_back(plate);
-    }
+    std::vector<Plate> result(nodes.size());
+    tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) { result[i] = plate(nodes[i]); });
     return result;
+}
+
+Tree::Plate Tree::plate(const Node& node) const {
+    Plate plate{};
+    double size = 0;
+    for (Index i = node.first; i < node.first + node.count; ++i) {
+        const uvec3 t = mesh.triangles[faces[i]];
+        const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+        const dvec3 area = 0.5 * glm::cross(b - a, c - a);
+        plate.area += area;
+        plate.centre += glm::length(area) * (a + b + c) / 3.0;
+        size += glm::length(area);
+    }
+    const dvec3 low(node.low), high(node.high);
+    plate.centre = size > 0 ? plate.centre / size : 0.5 * (low + high);
+    plate.reach = glm::length(glm::max(high - plate.centre, plate.centre - low));
+    plate.thickness = std::numeric_limits<double>::infinity();
+    const double length = glm::length(plate.area);
+    if (length == 0) return plate;
+    plate.thickness = 0;
+    for (Index i = node.first; i < node.first + node.count; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const dvec3 corner(mesh.positions[mesh.triangles[faces[i]][k]]);
+            plate.thickness =
+                std::max(plate.thickness, std::abs(glm::dot(plate.area, corner - plate.centre)) / length);
+        }
+    return plate;
 }
 
 float Tree::distance(vec3 p, float most) const {

@@ -34,6 +34,9 @@ struct Tree {
     float distance(vec3 point, float most) const;
 
     const Mesh& mesh;
+
+ private:
+    Plate plate(const Node& node) const;
 };
 
 }  // namespace palpate
