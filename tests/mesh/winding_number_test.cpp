@@ -44,20 +44,25 @@ TEST(WindingNumber, OfClosedSurfacesIsWhole) {
     }
 }
 
+// Open, one-sided, closed, and a soup of faces anywhere.
+Mesh any_triangles(unsigned seed) {
+    if (seed == 0) return band(0.8f, 1, 200);
+    if (seed == 1) return torus(1.2f, 0.5f, 90, 40);
+    Mesh mesh;
+    std::mt19937 random(seed);
+    std::normal_distribution<float> any(0, 1);
+    for (unsigned i = 0; i < 300 * seed; ++i) {
+        const vec3 at(any(random), any(random), any(random));
+        for (int k = 0; k < 3; ++k)
+            mesh.positions.push_back(at + 0.2f * vec3(any(random), any(random), any(random)));
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return mesh;
+}
+
 TEST(WindingNumber, IsNearTheExactSumForAnyTriangles) {
     for (unsigned seed = 0; seed < 6; ++seed) {
-        // Open, one-sided, closed, and a soup of faces anywhere.
-        Mesh mesh = seed == 0 ? band(0.8f, 1, 200) : seed == 1 ? torus(1.2f, 0.5f, 90, 40) : Mesh{};
-        if (seed > 1) {
-            std::mt19937 random(seed);
-            std::normal_distribution<float> any(0, 1);
-            for (unsigned i = 0; i < 300 * seed; ++i) {
-                const vec3 at(any(random), any(random), any(random));
-                for (int k = 0; k < 3; ++k)
-                    mesh.positions.push_back(at + 0.2f * vec3(any(random), any(random), any(random)));
-                mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-            }
-        }
+        const Mesh mesh = any_triangles(seed);
         const Tree tree(mesh);
         const WindingNumber winding(tree);
         double squares = 0;
@@ -69,6 +74,31 @@ TEST(WindingNumber, IsNearTheExactSumForAnyTriangles) {
         }
         EXPECT_TRUE(std::sqrt(squares / double(all.size())) <= 0.01);
     }
+}
+
+TEST(WindingNumber, InABallIsAsNear) {
+    for (unsigned seed = 0; seed < 6; ++seed) {
+        const Mesh mesh = any_triangles(seed);
+        const Tree tree(mesh);
+        const WindingNumber winding(tree);
+        double squares = 0;
+        const std::vector<dvec3> all = points(400, seed);
+        for (dvec3 p : all) {
+            // Balls in balls, the point at the rim of the last, where its slope errs most.
+            const dvec3 off = glm::normalize(dvec3(1, -2, 0.5) + p);
+            WindingNumber::Ball ball = winding.ball(p + 0.8 * off, 0.8);
+            for (double radius = 0.4; radius > 0.01; radius /= 2)
+                ball = winding.ball(p + radius * off, radius, ball);
+            const double error = winding.at(p, ball) - exact(mesh, p);
+            EXPECT_TRUE(std::abs(error) <= 0.05) << error;
+            squares += error * error;
+        }
+        EXPECT_TRUE(std::sqrt(squares / double(all.size())) <= 0.01);
+    }
+    const Mesh nothing;
+    const Tree tree(nothing);
+    const WindingNumber winding(tree);
+    EXPECT_EQ(winding.at(dvec3(0), winding.ball(dvec3(0), 1)), 0);
 }
 
 TEST(WindingNumber, DoesNotMindSize) {
