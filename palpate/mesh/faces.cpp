@@ -138,12 +138,7 @@ std::size_t drop_unused(Mesh& mesh) {
         mesh.positions[used] = mesh.positions[v];
         place[v] = used++;
     }
-    const std::size_t went = place.size() - used;
-    if (went == 0) return 0;
-    mesh.positions.resize(used);
-    drop_attributes(mesh);
-    for (uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
-    return went;
+    return renumber(mesh, place, used);
 }
 
 std::size_t drop_collapsed(Mesh& mesh) {

@@ -37,11 +37,13 @@ struct Repair {
 
 /// Makes a sound solid of any triangles: finite, every edge with two faces that run along it in opposite
 /// ways, and a volume above zero. Returns what changed, in order; a sound mesh stays as it is, to the bit.
-/// Where the walls could not be mended, the step "made by voxels of 0.005 m, because of …" says why; the
-/// count is of whatever made it fail. Where the mesh is already closed, vertices that share a place are not
-/// welded: they hold apart what would else touch. Drops normals, texture coordinates and tangents of a mesh
-/// it changes. Throws Error if a position is not finite or nothing encloses a volume: a sheet, a line, a
-/// point, a Möbius band. Positions may be of any size, 1e-20 m as well as 1e30 m.
+/// Where the walls could not be mended, the step "faces made by voxels, because …" says why. One step changes
+/// nothing: "faces too crowded to be searched for cuts", where thousands of long thin ones lie together, so
+/// that not all pairs that may cut through each other were looked at. Where the mesh is already closed,
+/// vertices that share a place are not welded: they hold apart what would else touch. Drops normals, texture
+/// coordinates and tangents of a mesh it changes. Throws Error if a position is not finite or nothing
+/// encloses a volume: a sheet, a line, a point, a Möbius band. Positions may be of any size, 1e-20 m as well
+/// as 1e30 m.
 std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings = {}, const Progress& progress = {});
 
 // ---- its steps ----

@@ -68,12 +68,7 @@ std::size_t weld_chosen(Mesh& mesh, float tolerance, F chosen) {
         if (chosen(v)) kept.add(count);
         place[v] = count++;
     }
-    const std::size_t went = place.size() - count;
-    if (went == 0) return 0;
-    mesh.positions.resize(count);
-    drop_attributes(mesh);
-    for (uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
-    return went;
+    return renumber(mesh, place, count);
 }
 
 }  // namespace
