@@ -108,8 +108,8 @@ inline void drop_attributes(Mesh& mesh) {
     mesh.tangents.clear();
 }
 
-/// Leaves the first `count` vertices, whose positions already stand there, and turns the faces' to `place`, the
-/// new number of each vertex of old. Returns how many vertices went.
+/// Leaves the first `count` vertices, whose positions already stand there, and turns the faces' to `place`,
+/// the new number of each vertex of old. Returns how many vertices went.
 inline std::size_t renumber(Mesh& mesh, const std::vector<Index>& place, Index count) {
     const std::size_t went = mesh.positions.size() - count;
     if (went == 0) return 0;

@@ -49,8 +49,9 @@ class Depths {
             if (half == 1)
                 at(part) = sign != 0 ? sign * depth_of(distance(part, 0)) : depth(part, ball);
             else
-                fill(part, half, sign, sign != 0 ? Ball{middle(part, half), reach(half)}
-                                                 : winding_.ball(middle(part, half), reach(half), ball));
+                fill(part, half, sign,
+                     sign != 0 ? Ball{middle(part, half), reach(half)}
+                               : winding_.ball(middle(part, half), reach(half), ball));
         }
     }
 
@@ -140,9 +141,8 @@ Mesh remake(const Mesh& mesh, float voxel, const std::string& name, const Progre
     const ivec3 blocks = (depths.dims + block - 1) / block;
     for (int z = 0; z < blocks.z; ++z) {
         if (progress) progress("making a solid by voxels", double(z) / blocks.z);
-        tbb::parallel_for(0, blocks.y * blocks.x, [&](int i) {
-            filler.fill(block * ivec3(i % blocks.x, i / blocks.x, z), block);
-        });
+        tbb::parallel_for(0, blocks.y * blocks.x,
+                          [&](int i) { filler.fill(block * ivec3(i % blocks.x, i / blocks.x, z), block); });
     }
 
     // A sheet has points inside by rounding at most.

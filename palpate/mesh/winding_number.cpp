@@ -7,7 +7,7 @@ namespace palpate {
 namespace {
 
 constexpr double whole_sphere = 4 * std::numbers::pi;
-constexpr double far_off = 3;    // in reaches of a plate: for the error that the header promises
+constexpr double far_off = 3;     // in reaches of a plate: for the error that the header promises
 constexpr double far_around = 5;  // in radii of a ball, as far as a slope is enough
 
 }  // namespace

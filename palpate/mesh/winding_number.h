@@ -23,8 +23,8 @@ class WindingNumber {
     struct Ball {
         dvec3 centre{0};
         double radius = 0;
-        double value = 0;         // of what is far, at the centre
-        dvec3 slope{0};           // of that value, 1/m
+        double value = 0;           // of what is far, at the centre
+        dvec3 slope{0};             // of that value, 1/m
         std::vector<Index> near{};  // nodes of the tree
     };
     Ball ball(dvec3 centre, double radius) const;
