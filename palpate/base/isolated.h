@@ -32,6 +32,8 @@ class Written {
 /// libraries that believe what a file claims: if one of them crashes, hangs or asks for memory without end,
 /// only the copy ends. Then Error is thrown, "LIBRARY crashed on what is in FILE; ...", as is an Error that
 /// `work` throws. The copy prints nothing, and dies with this process. `library` and `file` are for messages.
+/// Other threads may go on, and may allocate; but the copy has none of them, so for a lock of their own that
+/// one holds just then it would wait until its time is up.
 Written isolated(const std::string& library, const std::string& file, const Allowance& allowance,
                  const std::function<void(std::FILE*)>& work);
 

@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <thread>
 #include <vector>
 
 namespace palpate {
@@ -55,6 +57,25 @@ TEST(Isolated, ACrashAHangAndGreedEndOnlyTheCopy) {
                         }),
               "the library wants more than 64 MB for what is in a file; convert it with another program");
 #endif
+}
+
+TEST(Isolated, OtherThreadsMayBeBusy) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "not available: the address sanitizer's own locks do not outlive a fork";
+#endif
+    std::atomic<bool> stop = false;
+    std::vector<std::jthread> busy;
+    for (int i = 0; i < 3; ++i)
+        busy.emplace_back([&] {
+            while (!stop) delete[] new char[100'000];
+        });
+    for (int i = 0; i < 100; ++i) {
+        const Written written = isolated("the library", "a file", {}, [](std::FILE* out) {
+            std::fputs(std::string(100'000, 'x').c_str(), out);
+        });
+        EXPECT_EQ(written.bytes().size(), 100'000u);
+    }
+    stop = true;
 }
 
 TEST(Isolated, LeavesNoProcessAndSharesNoState) {
