@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <thread>
@@ -63,11 +62,10 @@ TEST(Isolated, OtherThreadsMayBeBusy) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "not available: the address sanitizer's own locks do not outlive a fork";
 #endif
-    std::atomic<bool> stop = false;
     std::vector<std::jthread> busy;
     for (int i = 0; i < 3; ++i)
-        busy.emplace_back([&] {
-            while (!stop) delete[] new char[100'000];
+        busy.emplace_back([](const std::stop_token& stop) {
+            while (!stop.stop_requested()) delete[] new char[100'000];
         });
     for (int i = 0; i < 100; ++i) {
         const Written written = isolated("the library", "a file", {}, [](std::FILE* out) {
@@ -75,7 +73,6 @@ TEST(Isolated, OtherThreadsMayBeBusy) {
         });
         EXPECT_EQ(written.bytes().size(), 100'000u);
     }
-    stop = true;
 }
 
 TEST(Isolated, LeavesNoProcessAndSharesNoState) {
