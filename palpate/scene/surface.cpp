@@ -64,7 +64,7 @@ Mesh from_file(Work& work) {
     return mesh;
 }
 
-// By how much `size` will scale the mesh.
+// By how much `size` scales the mesh as it lies; turning it and dropping specks may change that a little.
 float scale_of(const Mesh& mesh, const BodyRecipe& recipe) {
     const vec3 sides = bounds(mesh).size();
     return recipe.size > 0 ? recipe.size / std::max({sides.x, sides.y, sides.z}) : 1;
