@@ -1,7 +1,10 @@
 #pragma once
 #include "palpate/mesh/mesh.h"
+#include "palpate/mesh/soundness.h"
 #include "palpate/mesh/volume.h"
 #include "tests/shapes.h"
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -121,6 +124,14 @@ Volume volume_of(ivec3 dims, F f) {
 inline Volume rubble(ivec3 dims, unsigned seed) {
     std::mt19937 random(seed);
     return volume_of(dims, [&](vec3) { return std::uniform_real_distribution<float>(0, 1)(random); });
+}
+
+/// Finite, and with two faces at every edge, which run along it in opposite ways.
+inline void expect_closed(const Mesh& mesh) {
+    const Soundness found = soundness(mesh);
+    EXPECT_EQ(found.open_edges, 0u);
+    EXPECT_EQ(found.bad_edges, 0u);
+    for (vec3 p : mesh.positions) ASSERT_LE(glm::length(p), 1e9f);
 }
 
 }  // namespace palpate

@@ -10,13 +10,6 @@
 namespace palpate {
 namespace {
 
-void expect_closed(const Mesh& mesh) {
-    const Soundness found = soundness(mesh);
-    EXPECT_EQ(found.open_edges, 0u);
-    EXPECT_EQ(found.bad_edges, 0u);
-    for (vec3 p : mesh.positions) ASSERT_LE(glm::length(p), 1e9f);
-}
-
 TEST(Weld, MakesASoupABoxAgain) {
     Mesh mesh = soup(box(vec3(0), vec3(1)));
     mesh.normals.resize(mesh.positions.size());
