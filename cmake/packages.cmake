@@ -2,10 +2,16 @@
 # libraries that ours are linked with are found there again. `palpate_needs` is find_package or find_dependency.
 palpate_needs(glm)
 palpate_needs(fmt)
+palpate_needs(Threads)
 
 # Some of the following go on about optional programs that are not installed.
 set(palpate_log_level "${CMAKE_MESSAGE_LOG_LEVEL}")
 set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+
+palpate_needs(PkgConfig)
+
+# body, solver
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
 
 # mesh
 set(palpate_itk ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGDCM)
@@ -18,7 +24,6 @@ palpate_needs(TBB)
 palpate_needs(OpenVDB)
 
 # gl
-palpate_needs(PkgConfig)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 
 # scene, run

@@ -3,6 +3,7 @@
 build_packages=(
     g++ cmake ninja-build ccache pkg-config                                   # tools
     libglm-dev libfmt-dev                                                     # vectors, text
+    libhwy-dev                                                                # as many numbers at once as the CPU can
     libinsighttoolkit5-dev libgdcm-dev                                        # volumes
     libopenvdb-dev libboost-iostreams-dev libtbb-dev                          # solids
     libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures

@@ -2,6 +2,7 @@
 
 #include "palpate/base/error.h"
 #include "palpate/body/grid.h"
+#include "palpate/body/stencils.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +12,6 @@
 
 namespace palpate {
 namespace {
-
-// Round a node first, so that they make its fan; a link and its opposite have the same share.
-constexpr ivec3 round_offsets[4] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
-constexpr ivec3 shear_offsets[4] = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}};
 
 // A sheet's mass, by each node's part of its area.
 void weigh(Body& body, const ClothSettings& settings) {
@@ -103,12 +100,9 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
     body.spacing = spacing;
     body.fan = 4;
     Stencil& springs = body.springs.emplace<Stencil>();
-    auto add = [&](ivec3 offset, float stiffness) {
-        springs.links.push_back({offset, stiffness, spacing * glm::length(vec3(offset))});
-    };
-    for (ivec3 offset : round_offsets) add(offset, settings.stiffness.structural);
-    for (ivec3 offset : shear_offsets) add(offset, settings.stiffness.shear);
-    for (ivec3 offset : round_offsets) add(2 * offset, settings.stiffness.flexion);
+    const float stiffness[] = {settings.stiffness.structural, settings.stiffness.shear, settings.stiffness.flexion};
+    for (std::size_t l = 0; l < cloth_links.size(); ++l)
+        springs.links.push_back({cloth_links[l], stiffness[l / 4], spacing * glm::length(vec3(cloth_links[l]))});
 
     const ivec3 size(dims, 1);
     auto in_grid = [&](ivec3 p) {
@@ -122,7 +116,7 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
             if (in_grid(p + springs.links[l].offset)) shares |= std::uint64_t(4) << 3 * l;
         springs.shares.push_back(shares);
         int squares = 0;
-        for (ivec3 diagonal : shear_offsets) squares += in_grid(p + diagonal);
+        for (int l = 4; l < 8; ++l) squares += in_grid(p + cloth_links[l]);  // the diagonals
         body.area.push_back(spacing * spacing * float(std::max(squares, 1)) / 4);
 
         const int i = int(springs.at.size()) - 1, right = i + 1, up = i + dims.x;

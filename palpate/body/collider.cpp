@@ -26,6 +26,12 @@ float DistanceField::at(vec3 p) const {
     return sum;
 }
 
+vec3 DistanceField::uphill(vec3 p) const {
+    const float h = 0.5f * spacing;
+    auto across = [&](vec3 way) { return at(p + way) - at(p - way); };
+    return {across({h, 0, 0}), across({0, h, 0}), across({0, 0, h})};
+}
+
 DistanceField distance_field(const Mesh& mesh, float spacing) {
     const SignedDistance signed_distance(mesh, spacing);
     const Bounds box = bounds(mesh);

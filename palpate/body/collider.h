@@ -52,6 +52,8 @@ struct DistanceField {
 
     /// By trilinear interpolation; outside the grid as far as at its rim.
     float at(vec3 p) const;
+    /// Which way it grows: its differences across one spacing.
+    vec3 uphill(vec3 p) const;
 };
 
 /// The field of a closed mesh; it reaches three cells beyond it. Throws Error as SignedDistance does.

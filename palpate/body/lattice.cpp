@@ -4,6 +4,7 @@
 #include "palpate/body/cells.h"
 #include "palpate/body/grid.h"
 #include "palpate/body/hull.h"
+#include "palpate/body/stencils.h"
 #include "palpate/mesh/solid.h"
 
 #include <fmt/format.h>
@@ -18,15 +19,6 @@ namespace {
 constexpr int samples = 4;           // along each edge of a cell, to find how much of it is inside
 constexpr double most_cells = 30e6;  // in the box around a body
 
-// The 18 neighbours of a node; a link and its opposite stand side by side.
-constexpr ivec3 near_offsets[18] = {{1, 0, 0},  {-1, 0, 0},  {0, 1, 0},  {0, -1, 0},  {0, 0, 1},  {0, 0, -1},
-                                    {1, 1, 0},  {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0},  {1, 0, 1},  {-1, 0, -1},
-                                    {1, 0, -1}, {-1, 0, 1},  {0, 1, 1},  {0, -1, -1}, {0, 1, -1}, {0, -1, 1}};
-// What 2012 adds to them: the diagonals of the cell, and the next but one along each axis.
-constexpr ivec3 far_offsets[14] = {{1, 1, 1},   {-1, -1, -1}, {1, 1, -1},  {-1, -1, 1}, {1, -1, 1},
-                                   {-1, 1, -1}, {-1, 1, 1},   {1, -1, -1}, {2, 0, 0},   {-2, 0, 0},
-                                   {0, 2, 0},   {0, -2, 0},   {0, 0, 2},   {0, 0, -2}};
-
 Link link_to(ivec3 offset, float stiffness, float spacing) {
     return {offset, stiffness, spacing * glm::length(vec3(offset))};
 }
@@ -35,13 +27,13 @@ std::vector<Link> isotropic_links(const Material& material, float spacing) {
     const float stiffness =
         material.stiffness > 0 ? material.stiffness : 0.4f * material.youngs_modulus * spacing;
     std::vector<Link> links;
-    for (ivec3 offset : near_offsets) links.push_back(link_to(offset, stiffness, spacing));
+    for (int l = 0; l < lattice_links; ++l) links.push_back(link_to(volume_links[l], stiffness, spacing));
     return links;
 }
 
 std::vector<Link> links_of_kinds(const SpringKinds& stiffness, float spacing) {
     std::vector<Link> links;
-    auto add = [&](ivec3 offset) {
+    for (ivec3 offset : volume_links) {
         const ivec3 size = glm::abs(offset);
         const bool flexion = std::max({size.x, size.y, size.z}) == 2,
                    structural = size.x + size.y + size.z == 1;
@@ -50,9 +42,7 @@ std::vector<Link> links_of_kinds(const SpringKinds& stiffness, float spacing) {
                                 : structural ? stiffness.structural
                                              : stiffness.shear,
                                 spacing));
-    };
-    for (ivec3 offset : near_offsets) add(offset);
-    for (ivec3 offset : far_offsets) add(offset);
+    }
     return links;
 }
 

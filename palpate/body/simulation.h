@@ -9,6 +9,7 @@ namespace palpate {
 
 enum class Backend {
     reference,  // one node after the other on one CPU core: the truth that other backends are held against
+    cpu,        // as many nodes at once as the CPU's registers hold, on as many cores as it is given
 };
 
 enum class Integrator {   // order, with damping of velocities; docs/integrators.md derives them
@@ -21,7 +22,7 @@ enum class Integrator {   // order, with damping of velocities; docs/integrators
 };
 
 inline std::span<const Named<Backend>> names(Backend) {
-    static constexpr Named<Backend> all[] = {{Backend::reference, "reference"}};
+    static constexpr Named<Backend> all[] = {{Backend::reference, "reference"}, {Backend::cpu, "cpu"}};
     return all;
 }
 
@@ -37,7 +38,8 @@ inline std::span<const Named<Integrator>> names(Integrator) {
 
 /// How a body is moved.
 struct Simulation {
-    Backend backend = Backend::reference;
+    Backend backend = Backend::cpu;
+    int threads = 1;  // of the backend cpu; the motion is the same to the bit with any number
     Integrator integrator = Integrator::verlet;
     double step = 0;                    // s; 0 chooses 0.7 of the stability bound
     bool force = false;                 // accept a step above the bound

@@ -2,23 +2,28 @@
 //
 // The words are GLSL's; C++ and CUDA bring the same ones (dot, cross, max, min, inversesqrt). In C++ and CUDA this
 // file is included inside the backend's own struct, in GLSL at global scope, and finds there:
-//   FN, UNROLL         what stands before a function, and before the loop over links
-//   Real, Real3, Real4 a number, a vector: of one node, or of as many nodes as a SIMD register holds
+//   FN, ASIDE, UNROLL  what stands before a function, before one that few bodies need, and before a loop over links
+//   Real, Real3        a number, a vector: of one node, or of as many nodes as a SIMD register holds
 //   select(c, a, b)    a where c holds, b elsewhere
 //   any_node(c)        whether c holds for any of the nodes at hand
 //   LINKS              how many links a node has
 //   pass               the Pass: what all nodes share
 //   toward(p, l)       from p to this node's neighbour along link l, m
 //   passing(v, l)      from v to that neighbour's velocity, m/s
+//   neighbour(l)       1 where there is one along link l, which may be without a spring; else 0
 //   share(l)           how much of link l there is: 0 none, 1 all
 //   stiffness(l), tension(l)   of a whole link, N/m; stiffness x rest length, N
+//   longest(l)         ten times its rest length, squared, m^2
+//   origin()           what this node's position counts from: the world's, or its own place at rest, m
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
 //   held(i)            1 where drag i holds this node, else 0
-//   corner(i)          corner i of all polygons, m; distance_at(i, p)   field i at p: uphill, and the distance
-// These, and loading and storing nodes, are all that a backend writes itself.
+//   corner(i)          corner i of all polygons, m
+//   distance_at(i, p), uphill_at(i, p)   field i at p: the distance, m, and which way it grows
+// These, and loading and storing nodes, are all that a backend writes itself. It may also define OWN_PULL and bring the
+// same pull(l, square) in another form, if it has the pieces of the sum at hand.
 
 struct Node {
-    Real3 position;      // m
+    Real3 position;      // m, from origin()
     Real3 velocity;      // m/s
     Real  inverse_mass;  // 1/kg; 0: no force moves it, and it goes on at its velocity
 };
@@ -33,42 +38,43 @@ FN Real3 unit(Real3 a) { return inversesqrt(squared(a)) * a; }
 
 // ---- forces ----
 
-// What the springs of a node do to it.
-struct Pull {
-    Real3 force;    // N
-    Real3 outward;  // the approximate normal: sum of the unit vectors from its neighbours (2005, eq. 3)
-};
-
 // In a sheet, which has no neighbours on either side: the normal of the triangles around the node.
 FN Real3 fan_normal(Real3 position) {
     Real3 sum = Real3(0.0f, 0.0f, 0.0f);
-    Real3 last = toward(position, pass.fan - 1);
+    Real3 last = neighbour(pass.fan - 1) * toward(position, pass.fan - 1);
     for (int l = 0; l < pass.fan; ++l) {
-        Real3 along = toward(position, l);
+        Real3 along = neighbour(l) * toward(position, l);
         sum += cross(last, along);
         last = along;
     }
     return unit(sum);
 }
 
-// Each spring pulls with stiffness x (length - rest length) towards its neighbour (2005, eq. 1 without the factor 1/2).
-FN Pull springs(Real3 position) {
-    Pull sum;
-    sum.force = Real3(0.0f, 0.0f, 0.0f);
-    sum.outward = Real3(0.0f, 0.0f, 0.0f);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
-        Real3 along = toward(position, l);
-        Real inverse = inversesqrt(squared(along));
-        Real pull = stiffness(l) - tension(l) * inverse;
-        sum.force += (share(l) * pull) * along;
-        sum.outward -= (share(l) * inverse) * along;
-    }
-    if (pass.fan > 0) sum.outward = fan_normal(position);
+// A node's approximate normal: the sum of the unit vectors from its neighbours (2005, eq. 3).
+ASIDE Real3 outward(Real3 position) {
+    if (pass.fan > 0) return fan_normal(position);
+    Real3 sum = Real3(0.0f, 0.0f, 0.0f);
+    UNROLL for (int l = 0; l < LINKS; ++l) sum -= share(l) * unit(toward(position, l));
     return sum;
 }
 
+#ifndef OWN_PULL
+// N/m: the force of a spring by its length, whose square is given.
+FN Real pull(int l, Real square) { return share(l) * (stiffness(l) - tension(l) * inversesqrt(square)); }
+#endif
+
+// Each spring pulls with stiffness x (length - rest length) towards its neighbour (2005, eq. 1 without the factor 1/2).
+FN Real3 spring_force(Real3 position) {
+    Real3 force = Real3(0.0f, 0.0f, 0.0f);
+    UNROLL for (int l = 0; l < LINKS; ++l) {
+        Real3 along = toward(position, l);
+        force += pull(l, squared(along)) * along;
+    }
+    return force;
+}
+
 // Each spring resists the speed at which it stretches.
-FN Real3 dashpots(Node node) {
+ASIDE Real3 dashpots(Node node) {
     Real3 force = Real3(0.0f, 0.0f, 0.0f);
     UNROLL for (int l = 0; l < LINKS; ++l) {
         Real3 along = unit(toward(node.position, l));
@@ -80,7 +86,7 @@ FN Real3 dashpots(Node node) {
 
 // A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
 FN Real3 tip_force(Real3 position, int i) {
-    Real3 away = position - xyz(pass.tip[i]);
+    Real3 away = origin() + position - xyz(pass.tip[i]);
     Real square = squared(away);
     Real inverse = inversesqrt(square);
     Real depth = max(Real(pass.tip[i].w) + cover() - square * inverse, Real(0.0f));
@@ -88,21 +94,21 @@ FN Real3 tip_force(Real3 position, int i) {
 }
 
 FN Real3 drag_force(Real3 position, int i) {
-    return (held(i) * Real(pass.drag[i].w)) * (xyz(pass.drag[i]) - position);
+    return (held(i) * Real(pass.drag[i].w)) * (xyz(pass.drag[i]) - (origin() + position));
 }
 
 // The air presses with half its density x the square of its speed through the surface: on both sides of a sheet, on
 // a solid from the windward side. Along the surface it slides past.
-FN Real3 wind_force(Node node) {
-    Real3 outward = springs(node.position).outward;
-    Real3 normal = min(inversesqrt(squared(outward)), Real(1.0f)) * outward;  // a short one says little
+ASIDE Real3 wind_force(Node node) {
+    Real3 normal = outward(node.position);
+    normal = min(inversesqrt(squared(normal)), Real(1.0f)) * normal;  // a short one says little
     Real through = dot(xyz(pass.wind) - node.velocity, normal);
     if (pass.fan == 0) through = min(through, Real(0.0f));
     return (Real(0.5f * pass.wind.w) * area() * max(through, -through) * through) * normal;
 }
 
 FN Real3 acceleration(Node node) {
-    Real3 force = springs(node.position).force;
+    Real3 force = spring_force(node.position);
     if (pass.link_damping > 0.0f) force += dashpots(node);
     for (int i = 0; i < pass.tips; ++i) force += tip_force(node.position, i);
     for (int i = 0; i < pass.drags; ++i) force += drag_force(node.position, i);
@@ -128,4 +134,16 @@ FN Node collect(Node sum, Node now, Real3 change) {
     sum.velocity += (free * Real(pass.part)) * change;
     sum.position += Real(pass.part) * now.velocity;
     return sum;
+}
+
+// How many things are wrong with a node: its place is no number, or a spring is stretched to ten times its length. No
+// tissue does that; a motion that blows up soon does.
+ASIDE Real torn(Real3 position) {
+    Real one = Real(1.0f), none = Real(0.0f);
+    Real wrong = select(dot(position, position) <= Real(1e30f), none, one);
+    UNROLL for (int l = 0; l < LINKS; ++l) {
+        Real beyond = share(l) * stiffness(l) * (squared(toward(position, l)) - longest(l));
+        wrong += select(beyond <= none, none, one);
+    }
+    return wrong;
 }

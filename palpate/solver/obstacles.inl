@@ -68,9 +68,8 @@ FN Contact contact_with(Obstacle o, Real3 was, Real3 now) {
             contact = deeper(contact, at_triangle(before, p, corner(i), corner(i + 1), corner(i + 2)));
     }
     if (o.kind.x == field) {
-        Real4 there = distance_at(o.kind.y, p);
-        contact.normal = unit(Real3(there.x, there.y, there.z));
-        contact.depth = -there.w;
+        contact.depth = -distance_at(o.kind.y, p);
+        if (any_node(contact.depth + Real(o.place.w) > Real(0.0f))) contact.normal = unit(uphill_at(o.kind.y, p));
     }
     contact.normal = out_of(o, contact.normal);
     contact.depth += Real(o.place.w);
@@ -79,10 +78,10 @@ FN Contact contact_with(Obstacle o, Real3 was, Real3 now) {
 
 // Lifts a node out and stops its motion inward. Dry friction takes from its motion along the surface as much speed
 // as friction x the speed it lost inward, and as much way as friction x the depth: the same force, seen twice.
-FN Node push_out(Node node, Real3 was, Obstacle o) {
-    Contact contact = contact_with(o, was, node.position);
+ASIDE Node push_out(Node node, Real3 was, Obstacle o) {
+    Contact contact = contact_with(o, origin() + was, origin() + node.position);
     if (!any_node(contact.depth > Real(0.0f))) return node;
-    Real3 normal = contact.normal, surface = surface_velocity(o, node.position);
+    Real3 normal = contact.normal, surface = surface_velocity(o, origin() + node.position);
     Real3 speed = node.velocity - surface, way = node.position - was - Real(pass.duration) * surface;
     Real inward = min(dot(speed, normal), Real(0.0f)), friction = Real(o.velocity.w), one = Real(1.0f);
     speed -= dot(speed, normal) * normal;

@@ -60,7 +60,6 @@ Obstacle obstacle(const Collider& collider, const Motion& motion) {
 Pass make_pass(const Body& body, const Simulation& simulation) {
     Pass pass{};
     pass.gravity = vec4(simulation.gravity, 0);
-    pass.wind.w = simulation.air;
     pass.damping = body.damping;
     pass.link_damping = body.link_damping;
     pass.fan = body.fan;
@@ -69,7 +68,7 @@ Pass make_pass(const Body& body, const Simulation& simulation) {
         assert(stencil->links.size() <= std::size(pass.spring));
         for (int l = 0; l < pass.links; ++l) {
             const Link& link = stencil->links[l];
-            pass.spring[l] = {0, link.stiffness, link.stiffness * link.rest, 0};
+            pass.spring[l] = {0, link.stiffness, link.stiffness * link.rest, torn_at(link.rest, body)};
         }
     } else {
         pass.links = std::get<Table>(body.springs).width;

@@ -3,6 +3,7 @@
 #include "palpate/body/influences.h"
 #include "palpate/body/simulation.h"
 
+#include <algorithm>
 #include <vector>
 
 // What every backend shares on the host: the pass, as its kernels read it.
@@ -11,7 +12,7 @@ namespace palpate {
 
 #include "palpate/solver/pass.inl"
 
-/// A pass with all that stays the same for a body: gravity, damping, the springs of its stencil.
+/// A pass with all that stays the same for a body: gravity, damping, the springs of its stencil. Nothing touches it.
 Pass make_pass(const Body& body, const Simulation& simulation);
 
 /// Puts tips and drags where they are `time` seconds into the call.
@@ -25,5 +26,12 @@ std::vector<vec3> polygon_corners(const Simulation& simulation);
 
 /// The distance fields in their order.
 std::vector<const DistanceField*> distance_fields(const Simulation& simulation);
+
+/// Squared length at which a spring counts as torn, m²: ten times its rest length, or the body's spacing where that
+/// is more.
+inline float torn_at(float rest, const Body& body) {
+    const float longest = 10 * std::max(rest, body.spacing);
+    return longest * longest;
+}
 
 }  // namespace palpate

@@ -6,7 +6,7 @@ struct Spring {
     int   offset;      // to the neighbour, in nodes, where a backend lays its nodes out as a grid
     float stiffness;   // N/m
     float tension;     // stiffness x rest length, N
-    float spare;
+    float longest;     // ten times its rest length, squared, m^2: beyond, the motion has blown up
 };
 
 const int half_space = 0, round_box = 1, polygon = 2, field = 3;  // kinds of obstacles

@@ -1,6 +1,7 @@
 #include "palpate/solver/solver.h"
 
 #include "palpate/base/error.h"
+#include "palpate/solver/cpu/cpu.h"
 #include "palpate/solver/pass.h"
 #include "palpate/solver/reference/reference.h"
 #include "palpate/solver/stability.h"
@@ -72,6 +73,8 @@ std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulati
     switch (simulation.backend) {
         case Backend::reference:
             return make_reference<float>(body, simulation, frequency);
+        case Backend::cpu:
+            return make_cpu(body, simulation, frequency);
     }
     return nullptr;
 }

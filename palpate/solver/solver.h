@@ -49,6 +49,9 @@ class Solver {
 
     /// Goes on from a state of the same body, from save() or state() of any integrator and backend.
     virtual void restore(const State& state) = 0;
+
+    /// Bytes that the moving state and the springs take on this backend.
+    virtual std::size_t memory() const = 0;
 };
 
 /// Throws Error if a step above the stability bound is asked for without `force`, if the integrator has none

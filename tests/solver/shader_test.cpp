@@ -14,8 +14,8 @@ namespace {
 const std::string folder = PALPATE_SOURCE_DIR "/palpate/solver/";
 
 std::string physics() {
-    return "#define FN\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define Real3 "
-           "vec3\n#define Real4 vec4\n"
+    return "#define FN\n#define ASIDE\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define Real3 "
+           "vec3\n"
            "#define select(c, a, b) ((c) ? (a) : (b))\n#define any_node(c) (c)\n" +
            read_text(folder + "pass.inl") + "layout(std140, binding = 0) uniform Uniforms { Pass pass; };\n";
 }
@@ -28,11 +28,15 @@ std::string eyes() {
         float share(int l) { return 1.0; }
         float stiffness(int l) { return pass.spring[l].stiffness; }
         float tension(int l) { return pass.spring[l].tension; }
+        float longest(int l) { return pass.spring[l].longest; }
+        float neighbour(int l) { return 1.0; }
+        vec3 origin() { return vec3(0); }
         float area() { return 1.0; }
         float cover() { return 0.0; }
         float held(int i) { return 0.0; }
         vec3 corner(int i) { return texelFetch(corners, i).xyz; }
-        vec4 distance_at(int i, vec3 p) { return texture(distances, p); }
+        float distance_at(int i, vec3 p) { return texture(distances, p).w; }
+        vec3 uphill_at(int i, vec3 p) { return texture(distances, p).xyz; }
     )" + read_text(folder + "node.inl") +
            read_text(folder + "obstacles.inl");
 }

@@ -1,0 +1,82 @@
+// Pack: as many floats as a SIMD register holds, and Pack3, three of them, with GLSL's words. For code that is compiled
+// once for each instruction set by Highway's foreach_target: included inside HWY_NAMESPACE, once for each (so it has no
+// include guard), after FN is defined.
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Lanes = hn::ScalableTag<float>;
+using Word = hn::Vec<hn::RebindToUnsigned<Lanes>>;  // as many bits of integers
+using Mask = hn::Mask<Lanes>;
+
+struct Pack {
+    hn::Vec<Lanes> v;
+
+    Pack() = default;
+    FN Pack(float f) : v(hn::Set(Lanes(), f)) {}
+    FN Pack(hn::Vec<Lanes> lanes) : v(lanes) {}
+
+    FN friend Pack operator+(Pack a, Pack b) { return hn::Add(a.v, b.v); }
+    FN friend Pack operator-(Pack a, Pack b) { return hn::Sub(a.v, b.v); }
+    FN friend Pack operator*(Pack a, Pack b) { return hn::Mul(a.v, b.v); }
+    FN friend Pack operator/(Pack a, Pack b) { return hn::Div(a.v, b.v); }
+    FN friend Pack operator-(Pack a) { return hn::Neg(a.v); }
+    FN Pack& operator+=(Pack b) { return *this = *this + b; }
+    FN Pack& operator-=(Pack b) { return *this = *this - b; }
+    FN friend Mask operator>(Pack a, Pack b) { return hn::Gt(a.v, b.v); }
+    FN friend Mask operator<(Pack a, Pack b) { return hn::Lt(a.v, b.v); }
+    FN friend Mask operator<=(Pack a, Pack b) { return hn::Le(a.v, b.v); }
+    FN friend Pack max(Pack a, Pack b) { return hn::Max(a.v, b.v); }
+    FN friend Pack min(Pack a, Pack b) { return hn::Min(a.v, b.v); }
+    FN friend Pack select(Mask m, Pack a, Pack b) { return hn::IfThenElse(m, a.v, b.v); }
+};
+
+FN bool any_node(Mask m) { return !hn::AllFalse(Lanes(), m); }
+FN size_t lanes() { return hn::Lanes(Lanes()); }
+FN Pack load(const float* from) { return hn::LoadU(Lanes(), from); }
+FN void store(Pack a, float* to) { hn::StoreU(a.v, Lanes(), to); }
+
+// An estimate of 1/√a, good to `estimate_bits`: what the processor has for it.
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_SSE4
+FN Pack estimate(Pack a) { return hn::ApproximateReciprocalSqrt(a.v); }
+#elif HWY_TARGET == HWY_NEON  // eight bits only: one step of Newton's more
+FN Pack estimate(Pack a) {
+    const Pack e = hn::ApproximateReciprocalSqrt(a.v);
+    return e * (1.5f - (0.5f * a) * (e * e));
+}
+#else
+FN Pack estimate(Pack a) { return Pack(1.0f) / Pack(hn::Sqrt(a.v)); }
+#endif
+
+// One step of Newton's from there: right to two units in the last place.
+FN Pack inversesqrt(Pack a) {
+    const Pack e = estimate(a);
+    return e * (1.5f - (0.5f * a) * (e * e));
+}
+
+struct Pack3 {
+    Pack x, y, z;
+
+    Pack3() = default;
+    FN Pack3(Pack a, Pack b, Pack c) : x(a), y(b), z(c) {}
+
+    FN friend Pack3 operator+(Pack3 a, Pack3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    FN friend Pack3 operator-(Pack3 a, Pack3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    FN friend Pack3 operator*(Pack s, Pack3 a) { return {s * a.x, s * a.y, s * a.z}; }
+    FN Pack3& operator+=(Pack3 b) { return *this = *this + b; }
+    FN Pack3& operator-=(Pack3 b) { return *this = *this - b; }
+    FN friend Pack dot(Pack3 a, Pack3 b) { return a.x * b.x + (a.y * b.y + a.z * b.z); }
+    FN friend Pack3 cross(Pack3 a, Pack3 b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+    FN friend Pack3 select(Mask m, Pack3 a, Pack3 b) {
+        return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+    }
+};
+
+FN Pack3 load(const float* x, const float* y, const float* z, std::ptrdiff_t i) {
+    return {load(x + i), load(y + i), load(z + i)};
+}
+FN void store(Pack3 a, float* x, float* y, float* z, std::ptrdiff_t i) {
+    store(a.x, x + i);
+    store(a.y, y + i);
+    store(a.z, z + i);
+}

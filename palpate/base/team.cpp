@@ -1,0 +1,73 @@
+#include "palpate/base/team.h"
+
+#include <cassert>
+
+namespace palpate {
+namespace {
+
+// Tells the processor that this thread only waits.
+void pause() {
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    asm volatile("yield");
+#endif
+}
+
+// Until a counter leaves a value. Whoever waits for another member's work gets it within microseconds; between
+// calls it may be long.
+void wait_while(const std::atomic<unsigned>& counter, unsigned value) {
+    constexpr int spins = 4000;  // some 50 to 100 µs
+    for (int i = 0; i < spins; ++i) {
+        if (counter.load(std::memory_order_acquire) != value) return;
+        pause();
+    }
+    while (counter.load(std::memory_order_acquire) == value) counter.wait(value, std::memory_order_acquire);
+}
+
+}  // namespace
+
+Team::Team(int members) {
+    assert(members >= 1);
+    for (int member = 1; member < members; ++member) threads_.emplace_back([this, member] { stand_by(member); });
+}
+
+Team::~Team() {
+    work_ = nullptr;
+    calls_.fetch_add(1, std::memory_order_release);
+    calls_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+}
+
+void Team::run(const std::function<void(int)>& work) {
+    if (!threads_.empty()) {
+        work_ = &work;
+        calls_.fetch_add(1, std::memory_order_release);
+        calls_.notify_all();
+    }
+    work(0);
+    meet();
+}
+
+void Team::meet() {
+    if (threads_.empty()) return;
+    const unsigned meeting = meetings_.load(std::memory_order_relaxed);
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 < unsigned(members())) {
+        wait_while(meetings_, meeting);
+        return;
+    }
+    arrived_.store(0, std::memory_order_relaxed);
+    meetings_.fetch_add(1, std::memory_order_release);
+    meetings_.notify_all();
+}
+
+void Team::stand_by(int member) {
+    for (unsigned calls = 0;; ++calls) {
+        wait_while(calls_, calls);
+        if (!work_) return;
+        (*work_)(member);
+        meet();
+    }
+}
+
+}  // namespace palpate

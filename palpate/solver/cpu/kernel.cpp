@@ -1,0 +1,403 @@
+// The kernels: node.inl with as many nodes for a number as a register holds, compiled once for each instruction set.
+#include "palpate/solver/cpu/kernel.h"
+
+#include "palpate/body/stencils.h"
+
+// No vectors of unknown length as members (SVE, RVV); AVX3_DL adds nothing here.
+#define HWY_DISABLED_TARGETS \
+    (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "palpate/solver/cpu/kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#undef FN
+#define FN HWY_INLINE
+#undef ASIDE
+#define ASIDE HWY_NOINLINE  // else what it needs is kept on the stack for it, link by link, whether it runs or not
+
+HWY_BEFORE_NAMESPACE();
+namespace palpate::cpu::HWY_NAMESPACE {
+
+#include "palpate/base/pack-inl.h"
+
+// A pass in which nothing but springs and gravity acts. What the compiler knows to be none costs nothing.
+struct QuietPass : Pass {
+    static constexpr float link_damping = 0;
+    static constexpr int tips = 0, drags = 0, obstacles = 0;
+    static constexpr vec4 wind = vec4(0);
+    explicit QuietPass(const Pass& pass) : Pass(pass) {}
+
+    static bool fits(const Pass& p) {
+        return p.link_damping == 0 && p.tips == 0 && p.drags == 0 && p.obstacles == 0 && p.wind.w == 0;
+    }
+};
+
+// What the physics asks of a node whatever its springs.
+template <class AnyPass>
+struct Eyes {
+    using Real = Pack;
+    using Real3 = Pack3;
+
+    const Laid& body;
+    const AnyPass& pass;
+    const Sweep& sweep;
+    const Fields& at;
+    std::ptrdiff_t id;  // slot of the first of the nodes
+
+    FN Pack3 origin() const { return load(body.rest_x, body.rest_y, body.rest_z, id); }
+    FN Pack area() const { return load(body.area + id); }
+    FN Pack cover() const { return load(body.cover + id); }
+    FN Pack held(int i) const {
+        const hn::RebindToSigned<Lanes> d;
+        const auto here = hn::Iota(d, int(id));
+        return select(hn::RebindMask(Lanes(), hn::Eq(here, hn::Set(d, sweep.dragged[std::size_t(i)]))), Pack(1.0f), Pack(0.0f));
+    }
+    FN Pack3 corner(int i) const {
+        const vec3 c = body.corners[i];
+        return {c.x, c.y, c.z};
+    }
+    // Fields are looked up one node after the other.
+    HWY_NOINLINE Pack distance_at(int i, Pack3 p) const {
+        return each(p, [&](vec3 q) { return vec3(body.fields[i]->at(q), 0, 0); }).x;
+    }
+    HWY_NOINLINE Pack3 uphill_at(int i, Pack3 p) const {
+        return each(p, [&](vec3 q) { return body.fields[i]->uphill(q); });
+    }
+
+ private:
+    template <class F>
+    FN static Pack3 each(Pack3 p, F f) {
+        HWY_ALIGN float x[HWY_LANES(float)], y[HWY_LANES(float)], z[HWY_LANES(float)];
+        store(p, x, y, z, 0);
+        for (std::size_t n = 0; n < lanes(); ++n) {
+            const vec3 r = f(vec3(x[n], y[n], z[n]));
+            x[n] = r.x, y[n] = r.y, z[n] = r.z;
+        }
+        return load(x, y, z, 0);
+    }
+};
+
+// The links of a stencil, known when this is compiled.
+template <int links, int furthest, const auto& offsets>
+struct Stencil {
+    static constexpr int count = links, reach = furthest;
+    static constexpr int along(int l, int axis) { return offsets[std::size_t(l)][axis]; }
+};
+using LatticeStencil = Stencil<lattice_links, 1, volume_links>;
+using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
+using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
+
+// How the shares of links are kept.
+#if HWY_TARGET == HWY_AVX3
+constexpr bool masks_are_cheap = true;  // registers of their own
+#else
+constexpr bool masks_are_cheap = false;
+#endif
+
+// The members of a base that depends on a template must be named.
+#define USE_EYES(P) \
+    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin, Eyes<P>::area, \
+        Eyes<P>::cover, Eyes<P>::held, Eyes<P>::corner, Eyes<P>::distance_at, Eyes<P>::uphill_at; \
+    using typename Eyes<P>::Real, typename Eyes<P>::Real3;
+
+// Nodes of a grid: their neighbours along a link are as far away for all of them.
+template <class Links, int bits_per_link, bool along_axes, bool with_strength, class AnyPass = Pass>
+struct GridNode : Eyes<AnyPass> {
+    using WithPass = AnyPass;
+    using Quiet = GridNode<Links, bits_per_link, along_axes, with_strength, QuietPass>;
+    USE_EYES(AnyPass)
+    static constexpr int per_word = bits_per_link == 1 ? 32 : 10;
+    static constexpr int words = (Links::count + per_word - 1) / per_word;
+    static constexpr bool masked = bits_per_link == 1 && masks_are_cheap;
+
+    // What all nodes need of a link, ready in memory where one instruction can take it: the stiffness of what is one in
+    // a word; the tension times half and three halves; and where its share is in a word.
+    struct Constants {
+        Pack stiffness[Links::count], tension_half[Links::count], tension_three_halves[Links::count];
+        Word bits_of[Links::count];
+        FN explicit Constants(const Pass& pass) {
+            for (int l = 0; l < Links::count; ++l) {
+                const float unit = masked ? 1 : one_over_whole(l);
+                stiffness[l] = unit * pass.spring[l].stiffness;
+                tension_half[l] = 0.5f * unit * pass.spring[l].tension;
+                tension_three_halves[l] = 1.5f * unit * pass.spring[l].tension;
+                const std::uint32_t bits = bits_per_link == 1 ? 1 : 7;
+                bits_of[l] = hn::Set(hn::RebindToUnsigned<Lanes>(), bits << (l % per_word * bits_per_link));
+            }
+        }
+    };
+
+    const Constants& constants;
+    const int* offsets;
+    Word word[words];
+    Pack ahead[3][2 * Links::reach + 1];  // from the node along each axis, in spacings: less where it is now
+    Pack half_strength;
+
+    FN GridNode(const Sweep& s, const AnyPass& p, const Constants& c, const Fields& from, int run, std::ptrdiff_t slot)
+        : Eyes<AnyPass>{s.body, p, s, from, slot}, constants(c), offsets(s.body.offsets + run * Links::count) {
+        const hn::RebindToUnsigned<Lanes> d;
+        for (int w = 0; w < words; ++w) word[w] = hn::LoadU(d, body.words[w] + id);
+        if constexpr (along_axes) {
+            const Pack3 here = load(at.x, at.y, at.z, id);
+            for (int n = -Links::reach; n <= Links::reach; ++n) {
+                const Pack way = float(n) * body.spacing;
+                ahead[0][n + Links::reach] = way - here.x;
+                ahead[1][n + Links::reach] = way - here.y;
+                ahead[2][n + Links::reach] = way - here.z;
+            }
+        }
+        if constexpr (with_strength) half_strength = load(body.half_strength + id);
+    }
+
+    // A whole link is this many in its word.
+    static constexpr float one_over_whole(int l) {
+        const int bit = l % per_word * bits_per_link;
+        return bit == 31 ? -1.0f / 2147483648.0f : 1.0f / float((bits_per_link == 1 ? 1 : 4) << bit);
+    }
+    FN Word of_word(int l) const { return hn::And(word[l / per_word], constants.bits_of[l]); }
+    FN Pack times_share(int l, Pack a) const {
+        if constexpr (masked) {
+            const hn::RebindToUnsigned<Lanes> d;
+            return hn::IfThenElseZero(hn::RebindMask(Lanes(), hn::Ne(of_word(l), hn::Zero(d))), a.v);
+        } else {
+            return a * Pack(hn::ConvertTo(Lanes(), hn::BitCast(hn::RebindToSigned<Lanes>(), of_word(l))));
+        }
+    }
+    FN Pack stronger(int l, Pack a) const {
+        if constexpr (with_strength)
+            return (half_strength + load(body.half_strength + id + offsets[l])) * a;
+        else
+            return a;
+    }
+
+    FN Pack3 toward([[maybe_unused]] Pack3 p, int l) const {
+        const Pack3 there = load(at.x, at.y, at.z, id + offsets[l]);
+        if constexpr (along_axes) {
+            return {there.x + ahead[0][Links::along(l, 0) + Links::reach],
+                    there.y + ahead[1][Links::along(l, 1) + Links::reach],
+                    there.z + ahead[2][Links::along(l, 2) + Links::reach]};
+        } else {
+            const vec3 way = body.along[std::size_t(l)];
+            return there - p + Pack3(way.x, way.y, way.z);
+        }
+    }
+    FN Pack3 passing(Pack3 v, int l) const { return load(at.vx, at.vy, at.vz, id + offsets[l]) - v; }
+    FN Pack share(int l) const { return times_share(l, masked ? 1.0f : one_over_whole(l)); }
+    FN Pack neighbour(int l) const { return select(share(l) > 0.0f, Pack(1.0f), Pack(0.0f)); }
+    FN Pack stiffness(int l) const { return stronger(l, pass.spring[l].stiffness); }
+    FN Pack longest(int l) const { return pass.spring[l].longest; }
+
+    // With Newton's step for the root and the share's unit worked into the constants.
+    FN Pack pull(int l, Pack square) const {
+        const Pack e = estimate(square);
+        const Pack tension = constants.tension_three_halves[l] - constants.tension_half[l] * (square * e * e);
+        return times_share(l, stronger(l, constants.stiffness[l] - e * tension));
+    }
+
+#define LINKS Links::count
+#define UNROLL _Pragma("GCC unroll 32")
+#define OWN_PULL
+#include "palpate/solver/node.inl"
+#include "palpate/solver/obstacles.inl"
+#undef OWN_PULL
+#undef UNROLL
+#undef LINKS
+};
+
+// Nodes with their springs written out.
+struct TableNode : Eyes<Pass> {
+    using WithPass = Pass;
+    using Quiet = TableNode;  // gathering takes nearly all the time
+    struct Constants {
+        explicit Constants(const Pass&) {}
+    };
+
+    FN TableNode(const Sweep& s, const Pass& p, const Constants&, const Fields& from, int, std::ptrdiff_t slot)
+        : Eyes<Pass>{s.body, p, s, from, slot} {}
+
+    FN const TieFields& tie(int l) const { return body.ties[l]; }
+    FN auto to(int l) const { return hn::LoadU(hn::RebindToSigned<Lanes>(), tie(l).to + id); }
+    FN static Pack3 gather(const float* x, const float* y, const float* z, hn::Vec<hn::RebindToSigned<Lanes>> i) {
+        return {hn::GatherIndex(Lanes(), x, i), hn::GatherIndex(Lanes(), y, i), hn::GatherIndex(Lanes(), z, i)};
+    }
+
+    FN Pack3 toward(Pack3 p, int l) const {
+        return gather(at.x, at.y, at.z, to(l)) - p + load(tie(l).x, tie(l).y, tie(l).z, id);
+    }
+    FN Pack3 passing(Pack3 v, int l) const { return gather(at.vx, at.vy, at.vz, to(l)) - v; }
+    FN Pack share(int l) const { return load(tie(l).share + id); }
+    FN Pack neighbour(int) const { return 1.0f; }  // where there is none it is the node itself
+    FN Pack stiffness(int l) const { return load(tie(l).stiffness + id); }
+    FN Pack tension(int l) const { return load(tie(l).tension + id); }
+    FN Pack longest(int l) const { return load(tie(l).longest + id); }
+
+#define LINKS pass.links
+#define UNROLL
+#include "palpate/solver/node.inl"
+#include "palpate/solver/obstacles.inl"
+#undef UNROLL
+#undef LINKS
+};
+
+// ---- what is done with them ----
+
+template <class At>
+FN typename At::Node load_node(const Laid& body, const Fields& from, std::ptrdiff_t i) {
+    typename At::Node node;
+    node.position = load(from.x, from.y, from.z, i);
+    node.velocity = load(from.vx, from.vy, from.vz, i);
+    node.inverse_mass = load(body.inverse_mass + i);
+    return node;
+}
+template <class Node>
+FN void store_node(const Node& node, const Fields& to, std::ptrdiff_t i) {
+    store(node.position, to.x, to.y, to.z, i);
+    store(node.velocity, to.vx, to.vy, to.vz, i);
+}
+
+// The nearest multiple of `finest`, which is a power of two; what is large is one already.
+FN Pack on_a_multiple(Pack a, float finest) {
+    const Pack shift = 12582912.0f * finest;  // 1.5 x 2^23: from here on floats lie `finest` apart
+    return select(Pack(hn::Abs(a.v)) < Pack(4194304.0f * finest), (a + shift) - shift, a);
+}
+
+template <class At, class Do>
+FN void for_each_pack(const Sweep& s, const Fields& at, int first_run, int end_run, Do act) {
+    const typename At::WithPass pass(s.pass);
+    const typename At::Constants constants(pass);
+    for (int r = first_run; r < end_run; ++r) {
+        const Run run = s.body.runs[r];
+        for (std::ptrdiff_t i = run.first; i < run.first + run.count; i += std::ptrdiff_t(lanes())) {
+            At eyes(s, pass, constants, at, r, i);
+            act(eyes, r, i);
+        }
+    }
+}
+
+template <class At>
+void pass(const Sweep& s, int first_run, int end_run, Largest& largest) {
+    const Pass& pass = s.pass;
+    const Fields start = s.states[s.turn.start], at = s.states[s.turn.at], next = s.states[s.turn.next];
+    const Fields begin = s.states[now], total = s.states[sum];
+    Pack speed = 0.0f, move = 0.0f;
+    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int, std::ptrdiff_t i) HWY_ATTR {
+        const auto node = load_node<At>(s.body, at, i);
+        const Pack3 change = pass.kick > 0 ? eyes.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
+        if (pass.part > 0) {
+            const auto before = load_node<At>(s.body, s.turn.opens ? at : total, i);
+            store_node(eyes.collect(before, node, change), total, i);
+        }
+        auto moved = eyes.integrate(load_node<At>(s.body, start, i), node, change);
+        const Pack3 was = load(begin.x, begin.y, begin.z, i);
+        if (eyes.pass.obstacles > 0) moved = eyes.collide(moved, was);
+        if (s.turn.ends) {
+            Pack3& p = moved.position;
+            p = {on_a_multiple(p.x, s.body.finest), on_a_multiple(p.y, s.body.finest), on_a_multiple(p.z, s.body.finest)};
+            speed = max(speed, dot(moved.velocity, moved.velocity));
+            move = max(move, dot(p - was, p - was));
+        }
+        store_node(moved, next, i);
+    });
+    largest.speed = std::max(largest.speed, hn::GetLane(hn::MaxOfLanes(Lanes(), speed.v)));
+    largest.move = std::max(largest.move, hn::GetLane(hn::MaxOfLanes(Lanes(), move.v)));
+}
+
+// Adds up what a register holds, one node after the other.
+FN void add(Pack3 force, double seconds, dvec3& sum) {
+    HWY_ALIGN float x[HWY_LANES(float)], y[HWY_LANES(float)], z[HWY_LANES(float)];
+    store(force, x, y, z, 0);
+    for (std::size_t n = 0; n < lanes(); ++n) sum += seconds * dvec3(x[n], y[n], z[n]);
+}
+
+template <class At>
+void give(const Sweep& s, int first_run, int end_run, Given* of_run) {
+    const Fields at = s.states[s.turn.at];
+    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int r, std::ptrdiff_t i) HWY_ATTR {
+        const Pack3 p = load(at.x, at.y, at.z, i);
+        for (int t = 0; t < s.pass.tips; ++t) {
+            const Pack3 force = eyes.tip_force(p, t);
+            if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_run[r].by_tip[std::size_t(t)]);
+        }
+        for (int d = 0; d < s.pass.drags; ++d) {
+            const Pack3 force = eyes.drag_force(p, d);
+            if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_run[r].by_drag[std::size_t(d)]);
+        }
+    });
+}
+
+template <class At>
+void normals(const Sweep& s, int first_run, int end_run, float* x, float* y, float* z) {
+    const Fields at = s.states[s.turn.at];
+    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int, std::ptrdiff_t i) HWY_ATTR {
+        store(eyes.outward(load(at.x, at.y, at.z, i)), x, y, z, i);
+    });
+}
+
+template <class At>
+bool torn(const Sweep& s, int first_run, int end_run) {
+    const Fields at = s.states[s.turn.at];
+    Pack wrong = 0.0f;
+    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int, std::ptrdiff_t i) HWY_ATTR {
+        wrong += eyes.torn(load(at.x, at.y, at.z, i));
+    });
+    return any_node(wrong > 0.0f);
+}
+
+// Calls act<Node>() with the nodes that a body is made of.
+template <class Act>
+auto of(Springs springs, Act act) {
+    switch (springs) {
+        case Springs::lattice_whole:
+            return act.template operator()<GridNode<LatticeStencil, 1, true, false>>();
+        case Springs::lattice:
+            return act.template operator()<GridNode<LatticeStencil, 3, true, false>>();
+        case Springs::lattice_with_strength:
+            return act.template operator()<GridNode<LatticeStencil, 3, true, true>>();
+        case Springs::cloth:
+            return act.template operator()<GridNode<ClothStencil, 1, true, false>>();
+        case Springs::turned_cloth:
+            return act.template operator()<GridNode<ClothStencil, 1, false, true>>();
+        case Springs::volume:
+            return act.template operator()<GridNode<VolumeStencil, 1, true, true>>();
+        case Springs::table:
+            break;
+    }
+    return act.template operator()<TableNode>();
+}
+
+void pass_over(const Sweep& s, int first_run, int end_run, Largest& largest) {
+    of(s.body.springs, [&]<class At>() {
+        if (QuietPass::fits(s.pass))
+            pass<typename At::Quiet>(s, first_run, end_run, largest);
+        else
+            pass<At>(s, first_run, end_run, largest);
+    });
+}
+void give_over(const Sweep& s, int first_run, int end_run, Given* of_run) {
+    of(s.body.springs, [&]<class At>() { give<At>(s, first_run, end_run, of_run); });
+}
+void normals_over(const Sweep& s, int first_run, int end_run, float* x, float* y, float* z) {
+    of(s.body.springs, [&]<class At>() { normals<At>(s, first_run, end_run, x, y, z); });
+}
+bool torn_over(const Sweep& s, int first_run, int end_run) {
+    return of(s.body.springs, [&]<class At>() { return torn<At>(s, first_run, end_run); });
+}
+
+Kernels all() {
+    return {hwy::TargetName(HWY_TARGET), int(lanes()), pass_over, give_over, normals_over, torn_over};
+}
+
+}  // namespace palpate::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate::cpu {
+HWY_EXPORT(all);
+
+const Kernels& kernels() {
+    static const Kernels best = HWY_DYNAMIC_DISPATCH(all)();
+    return best;
+}
+}  // namespace palpate::cpu
+#endif

@@ -1,0 +1,172 @@
+#include "palpate/solver/cpu/laid_body.h"
+
+#include "palpate/body/grid.h"
+#include "palpate/body/stencils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::cpu {
+namespace {
+
+bool follows(const Stencil& stencil, std::span<const ivec3> offsets) {
+    return std::equal(stencil.links.begin(), stencil.links.end(), offsets.begin(), offsets.end(),
+                      [](const Link& link, ivec3 offset) { return link.offset == offset; });
+}
+
+bool whole(const Stencil& stencil) {
+    for (std::size_t i = 0; i < stencil.shares.size(); ++i)
+        for (std::size_t l = 0; l < stencil.links.size(); ++l)
+            if (stencil.quarters(i, l) % 4 != 0) return false;
+    return true;
+}
+
+float furthest(const Body& body) {
+    float most = 0;
+    for (vec3 p : body.positions)
+        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(p[k]));
+    return most;
+}
+
+// Each link at rest, if all nodes that have it agree on it; else nothing.
+std::vector<vec3> links_at_rest(const Body& body) {
+    const Stencil& stencil = body.stencil();
+    const GridIndex number(stencil.at);
+    const float hair = 1e-5f * body.spacing + 4 * std::numeric_limits<float>::epsilon() * furthest(body);
+    std::vector<vec3> links;
+    for (std::size_t l = 0; l < stencil.links.size(); ++l) {
+        dvec3 sum(0);
+        std::vector<vec3> seen;
+        for (std::size_t i = 0; i < body.count(); ++i) {
+            const int to = number.at(stencil.at[i] + stencil.links[l].offset);
+            if (to >= 0) seen.push_back(body.positions[std::size_t(to)] - body.positions[i]);
+        }
+        for (vec3 v : seen) sum += dvec3(v);
+        const vec3 mean = seen.empty() ? body.spacing * vec3(stencil.links[l].offset) : vec3(sum / double(seen.size()));
+        for (vec3 v : seen)
+            if (!(glm::distance(v, mean) <= hair)) return {};
+        links.push_back(mean);
+    }
+    return links;
+}
+
+bool along_axes(const Body& body, const std::vector<vec3>& links) {
+    for (std::size_t l = 0; l < links.size(); ++l)
+        if (!(glm::distance(links[l], body.spacing * vec3(body.stencil().links[l].offset)) <= 1e-4f * body.spacing))
+            return false;
+    return true;
+}
+
+// The kernel for a body's springs, and for those of a grid its links at rest.
+std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
+    const auto* stencil = std::get_if<Stencil>(&body.springs);
+    if (!stencil || body.count() == 0) return {Springs::table, {}};
+    std::vector<vec3> links = links_at_rest(body);
+    if (links.empty()) return {Springs::table, {}};
+    const bool straight = along_axes(body, links), even = stencil->strength.empty();
+    Springs springs = Springs::table;
+    if (straight && follows(*stencil, std::span(volume_links).first(lattice_links)))
+        springs = !even             ? Springs::lattice_with_strength
+                  : whole(*stencil) ? Springs::lattice_whole
+                                    : Springs::lattice;
+    if (straight && follows(*stencil, volume_links)) springs = Springs::volume;
+    if (follows(*stencil, cloth_links) && whole(*stencil))
+        springs = straight && even ? Springs::cloth : Springs::turned_cloth;
+    return {springs, std::move(links)};
+}
+
+bool in_quarters(Springs springs) { return springs == Springs::lattice || springs == Springs::lattice_with_strength; }
+
+Layout layout_for(const Body& body, Springs springs, int lanes) {
+    return springs == Springs::table ? Layout(body.count(), lanes) : Layout(body.stencil(), lanes);
+}
+
+}  // namespace
+
+LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes)
+    : LaidBody(body, simulation, lanes, springs_of(body)) {}
+
+LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
+                   const std::pair<Springs, std::vector<vec3>>& springs)
+    : layout_(layout_for(body, springs.first, lanes)),
+      corners_(polygon_corners(simulation)),
+      fields_(distance_fields(simulation)) {
+    view_.springs = springs.first;
+    view_.spacing = body.spacing;
+    view_.finest = std::exp2(float(std::ilogb(std::max(furthest(body), 1e-30f)) + 1 - 51));
+    std::copy(springs.second.begin(), springs.second.end(), view_.along.begin());
+    if (view_.springs == Springs::table)
+        lay_table(body);
+    else
+        lay_grid(body);
+    view_.runs = layout_.runs.data();
+    view_.offsets = layout_.offsets.data();
+    view_.inverse_mass = spread(body.inverse_mass);
+    view_.area = spread(body.area);
+    view_.cover = spread(body.cover);
+    float* rest[3] = {keep(), keep(), keep()};
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (int k = 0; k < 3; ++k) rest[k][layout_.slot[i]] = body.positions[i][k];
+    view_.rest_x = rest[0], view_.rest_y = rest[1], view_.rest_z = rest[2];
+    view_.corners = corners_.data();
+    view_.fields = fields_.data();
+}
+
+void LaidBody::lay_grid(const Body& body) {
+    const Stencil& stencil = body.stencil();
+    const bool quarters = in_quarters(view_.springs);
+    const std::size_t per_word = quarters ? 10 : 32;
+    for (int w = 0; w < (quarters ? 2 : 1); ++w) {
+        words_.emplace_back(layout_, arrays_++);
+        bytes_ += words_.back().bytes();
+        view_.words[w] = words_.back().data();
+    }
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (std::size_t l = 0; l < stencil.links.size(); ++l) {
+            const unsigned share = unsigned(stencil.quarters(i, l)), bit = unsigned(l % per_word);
+            words_[l / per_word].data()[layout_.slot[i]] |= quarters ? share << 3 * bit : share / 4 << bit;
+        }
+    std::vector<float> half(body.count(), 0.5f);
+    for (std::size_t i = 0; i < stencil.strength.size(); ++i) half[i] *= stencil.strength[i];
+    const bool varies = view_.springs == Springs::lattice_with_strength || view_.springs == Springs::turned_cloth ||
+                        view_.springs == Springs::volume;
+    if (varies) view_.half_strength = spread(half);
+}
+
+void LaidBody::lay_table(const Body& body) {
+    const Table springs = table(body);
+    for (int l = 0; l < springs.width; ++l) {
+        ints_.emplace_back(layout_, arrays_++);
+        bytes_ += ints_.back().bytes();
+        int* to = ints_.back().data();
+        for (int slot = 0; slot < layout_.slots; ++slot) to[slot] = slot;
+        float* fields[7];
+        for (float*& field : fields) field = keep();
+        for (std::size_t i = 0; i < body.count(); ++i) {
+            const Tie& tie = springs.of(i)[std::size_t(l)];
+            fields[6][i] = torn_at(tie.rest, body);
+            if (tie.to < 0) continue;
+            const vec3 way = body.positions[std::size_t(tie.to)] - body.positions[i];
+            const float values[] = {way.x, way.y, way.z, tie.share, tie.stiffness, tie.stiffness * tie.rest};
+            for (int k = 0; k < 6; ++k) fields[k][i] = values[k];
+            to[i] = tie.to;
+        }
+        ties_.push_back({to, fields[0], fields[1], fields[2], fields[3], fields[4], fields[5], fields[6]});
+    }
+    view_.ties = ties_.data();
+}
+
+float* LaidBody::keep() {
+    floats_.push_back(array());
+    bytes_ += floats_.back().bytes();
+    return floats_.back().data();
+}
+
+const float* LaidBody::spread(const std::vector<float>& of_nodes) {
+    float* to = keep();
+    for (std::size_t i = 0; i < of_nodes.size(); ++i) to[layout_.slot[i]] = of_nodes[i];
+    return to;
+}
+
+}  // namespace palpate::cpu

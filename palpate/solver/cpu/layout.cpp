@@ -1,0 +1,170 @@
+#include "palpate/solver/cpu/layout.h"
+
+#include "palpate/body/grid.h"
+
+#include <algorithm>
+#include <array>
+
+namespace palpate::cpu {
+namespace {
+
+constexpr int longest_run = 256;
+
+int rounded_up(int count, int lanes) { return (count + lanes - 1) / lanes * lanes; }
+
+// Nodes of one row with no gap as wide as a register.
+struct Segment {
+    ivec3 first;                // the place of its first node
+    int length = 0;             // to its last
+    int slot = 0;               // of its first
+    std::vector<int> nodes = {};  // that are there
+};
+
+// The places with `axis` in front: rows run along x.
+std::vector<ivec3> turned(std::span<const ivec3> places, int axis) {
+    std::vector<ivec3> to;
+    for (ivec3 p : places) to.push_back({p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]});
+    return to;
+}
+
+std::vector<Segment> segments(std::span<const ivec3> places, int lanes) {
+    std::vector<int> order(places.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = int(i);
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+        const ivec3 p = places[std::size_t(a)], q = places[std::size_t(b)];
+        return std::array{p.z, p.y, p.x} < std::array{q.z, q.y, q.x};
+    });
+    std::vector<Segment> all;
+    for (int node : order) {
+        const ivec3 p = places[std::size_t(node)];
+        const bool goes_on = !all.empty() && all.back().first.y == p.y && all.back().first.z == p.z &&
+                             p.x - (all.back().first.x + all.back().length) < lanes - 1;
+        if (!goes_on) all.push_back({p});
+        all.back().length = p.x - all.back().first.x + 1;
+        all.back().nodes.push_back(node);
+    }
+    return all;
+}
+
+bool fills_its_box(std::span<const ivec3> places) {
+    if (places.empty()) return false;
+    ivec3 low = places[0], high = places[0];
+    for (ivec3 p : places) low = glm::min(low, p), high = glm::max(high, p);
+    const ivec3 size = high - low + 1;
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z) == places.size();
+}
+
+class Laying {
+ public:
+    Laying(const Stencil& stencil, int lanes, Layout& layout) : stencil_(stencil), lanes_(lanes), layout_(layout) {
+        box_ = fills_its_box(stencil.at);
+        choose_axis();
+        give_slots();
+        if (box_) add_runs_of_box();
+        else
+            for (const Segment& segment : segments_) add_runs(segment);
+    }
+
+ private:
+    // The axis along which rows need the fewest registers. A box needs as many along each.
+    void choose_axis() {
+        std::size_t least = 0;
+        for (int axis = 0; axis < (box_ ? 1 : 3); ++axis) {
+            std::vector<ivec3> places = turned(stencil_.at, axis);
+            std::vector<Segment> rows = segments(places, lanes_);
+            std::size_t registers = 0;
+            for (const Segment& row : rows) registers += std::size_t(rounded_up(row.length, lanes_) / lanes_);
+            if (axis > 0 && registers >= least) continue;
+            least = registers;
+            places_ = std::move(places);
+            segments_ = std::move(rows);
+        }
+    }
+
+    void give_slots() {
+        layout_.slot.resize(places_.size());
+        for (Segment& segment : segments_) {
+            segment.slot = layout_.slots;
+            for (int node : segment.nodes)
+                layout_.slot[std::size_t(node)] = segment.slot + places_[std::size_t(node)].x - segment.first.x;
+            layout_.slots += box_ ? segment.length : rounded_up(segment.length, lanes_);
+        }
+        layout_.slots = rounded_up(layout_.slots, lanes_);
+    }
+
+    // A box is one row: a node's neighbours are as far away as in the middle of it.
+    void add_runs_of_box() {
+        if (segments_.empty()) return;
+        const ivec3 size = segments_.back().first - segments_.front().first + ivec3(segments_.back().length, 1, 1);
+        std::vector<int> offsets;
+        for (const Link& link : stencil_.links)
+            offsets.push_back(link.offset.x + size.x * (link.offset.y + size.y * link.offset.z));
+        for (int first = 0; first < layout_.slots; first += lanes_) add(first, offsets);
+    }
+
+    void add_runs(const Segment& segment) {
+        const int end = segment.slot + rounded_up(segment.length, lanes_);
+        for (int first = segment.slot; first < end; first += lanes_) add(first, offsets_of(segment, first));
+    }
+
+    // Register after register: those whose neighbours are equally far away make one run.
+    void add(int first, const std::vector<int>& offsets) {
+        auto& runs = layout_.runs;
+        const bool goes_on = !runs.empty() && runs.back().first + runs.back().count == first &&
+                             runs.back().count + lanes_ <= longest_run &&
+                             std::equal(offsets.begin(), offsets.end(), layout_.offsets.end() - std::ptrdiff_t(offsets.size()));
+        if (goes_on) {
+            runs.back().count += lanes_;
+        } else {
+            runs.push_back({first, lanes_});
+            layout_.offsets.insert(layout_.offsets.end(), offsets.begin(), offsets.end());
+        }
+        for (int offset : offsets) {
+            layout_.margin = std::max(layout_.margin, -(first + offset));
+            layout_.margin = std::max(layout_.margin, first + offset + lanes_ - layout_.slots);
+        }
+    }
+
+    // From the slots of one register to their neighbours' along each link, 0 where none has any.
+    std::vector<int> offsets_of(const Segment& segment, int first) const {
+        std::vector<int> offsets(stencil_.links.size(), 0);
+        const auto from = nodes_from(segment, first);
+        for (std::size_t l = 0; l < offsets.size(); ++l)
+            for (int node : from) {
+                if (stencil_.quarters(std::size_t(node), l) == 0) continue;
+                const int to = number_.at(stencil_.at[std::size_t(node)] + stencil_.links[l].offset);
+                offsets[l] = layout_.slot[std::size_t(to)] - layout_.slot[std::size_t(node)];
+                break;  // the others' are as far: no gap within a segment is as wide as a register
+            }
+        return offsets;
+    }
+
+    std::span<const int> nodes_from(const Segment& segment, int first) const {
+        auto before = [&](int slot) {
+            return [this, slot](int node) { return layout_.slot[std::size_t(node)] < slot; };
+        };
+        auto begin = std::partition_point(segment.nodes.begin(), segment.nodes.end(), before(first));
+        auto end = std::partition_point(begin, segment.nodes.end(), before(first + lanes_));
+        return {begin, end};
+    }
+
+    const Stencil& stencil_;
+    const int lanes_;
+    Layout& layout_;
+    const GridIndex number_{stencil_.at};
+    bool box_ = false;
+    std::vector<ivec3> places_;
+    std::vector<Segment> segments_;
+};
+
+}  // namespace
+
+Layout::Layout(const Stencil& stencil, int lanes) { Laying(stencil, lanes, *this); }
+
+Layout::Layout(std::size_t nodes, int lanes) : slots(rounded_up(int(nodes), lanes)), margin(lanes) {
+    for (std::size_t i = 0; i < nodes; ++i) slot.push_back(int(i));
+    for (int first = 0; first < slots; first += longest_run)
+        runs.push_back({first, std::min(longest_run, slots - first)});
+}
+
+}  // namespace palpate::cpu

@@ -1,0 +1,63 @@
+#pragma once
+#include "palpate/body/body.h"
+
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+namespace palpate::cpu {
+
+/// Nodes that lie one after the other in memory, and whose neighbours along each link do so too.
+struct Run {
+    int first;  // slot
+    int count;  // of slots, a multiple of the lanes
+};
+
+/// Where the nodes of a body lie: each has a slot of its own, and along a row of the grid slots follow each other. What
+/// a run may read beside its own slots exists, but means nothing.
+struct Layout {
+    std::vector<int> slot;     // of each node
+    std::vector<Run> runs;     // at most 256 slots each, so that threads can share them
+    std::vector<int> offsets;  // of each run and each link: from a slot to that of its neighbour
+    int slots = 0;
+    int margin = 0;  // slots before the first and behind the last that a run may read
+
+    /// A body in a grid, for registers of so many floats. A box without a hole is one long row: all its nodes have
+    /// their neighbours at the same distance. Of other shapes the rows along that axis are kept that fill their
+    /// registers best, each cut where a register or more would be empty: memory goes with the nodes, not the box.
+    Layout(const Stencil& stencil, int lanes);
+
+    /// A body whose springs are written out: in its own order.
+    Layout(std::size_t nodes, int lanes);
+};
+
+/// One T for each slot, zeros at first.
+template <class T>
+class Array {
+ public:
+    /// `number`: of the array. Each begins at another place of a page, else reading one waits for writing another.
+    Array(const Layout& layout, int number) {
+        const std::size_t before = std::size_t(layout.margin) + std::size_t(number * 5 % 61) * line;
+        const std::size_t count = before + line + std::size_t(layout.slots + layout.margin);
+        bytes_ = (count * sizeof(T) + page - 1) / page * page;
+        memory_.reset(static_cast<T*>(std::aligned_alloc(page, bytes_)));
+        if (!memory_) throw std::bad_alloc();
+        std::memset(static_cast<void*>(memory_.get()), 0, bytes_);
+        first_ = memory_.get() + (before + line - 1) / line * line;
+    }
+    T* data() const { return first_; }
+    std::size_t bytes() const { return bytes_; }
+
+ private:
+    static constexpr std::size_t page = 4096, line = 64 / sizeof(T);
+    struct Free {
+        void operator()(T* p) const { std::free(p); }
+    };
+    std::unique_ptr<T, Free> memory_;
+    T* first_ = nullptr;
+    std::size_t bytes_ = 0;
+};
+
+}  // namespace palpate::cpu
