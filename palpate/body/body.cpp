@@ -15,11 +15,11 @@ Table table(const Body& body) {
     for (std::size_t i = 0; i < body.count(); ++i)
         for (std::size_t l = 0; l < stencil.links.size(); ++l) {
             const Link& link = stencil.links[l];
-            const int to = node_at.at(stencil.at[i] + link.offset);
+            const int quarters = stencil.quarters(i, l);
+            const int to = quarters > 0 ? node_at.at(stencil.at[i] + link.offset) : -1;
             const float strength =
                 stencil.strength.empty() || to < 0 ? 1 : 0.5f * (stencil.strength[i] + stencil.strength[to]);
-            const float share = 0.25f * float(stencil.quarters(i, l));
-            table.ties.push_back({to, share, strength * link.stiffness, link.rest});
+            table.ties.push_back({to, 0.25f * float(quarters), strength * link.stiffness, link.rest});
         }
     return table;
 }

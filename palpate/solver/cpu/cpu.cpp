@@ -234,8 +234,10 @@ class Cpu final : public Solver {
     }
 
     void place(std::size_t i, dvec3 p) {
-        const double finest = laid_.view().finest;
-        const dvec3 way = finest * glm::round((p - dvec3(body_.positions[i])) / finest);
+        const double finest = laid_.view().finest, large = 4194304 * finest;  // as the kernel does at the end of a call
+        dvec3 way = p - dvec3(body_.positions[i]);
+        for (int k = 0; k < 3; ++k)
+            if (std::abs(way[k]) < large) way[k] = finest * std::round(way[k] / finest);
         const int s = laid_.layout().slot[i];
         const Fields& f = states_[now];
         f.x[s] = float(way.x), f.y[s] = float(way.y), f.z[s] = float(way.z);

@@ -88,13 +88,6 @@ using LatticeStencil = Stencil<lattice_links, 1, volume_links>;
 using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
 using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
-// How the shares of links are kept.
-#if HWY_TARGET == HWY_AVX3
-constexpr bool masks_are_cheap = true;  // registers of their own
-#else
-constexpr bool masks_are_cheap = false;
-#endif
-
 // The members of a base that depends on a template must be named.
 #define USE_EYES(P) \
     using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin, Eyes<P>::area, \
@@ -109,7 +102,7 @@ struct GridNode : Eyes<AnyPass> {
     USE_EYES(AnyPass)
     static constexpr int per_word = bits_per_link == 1 ? 32 : 10;
     static constexpr int words = (Links::count + per_word - 1) / per_word;
-    static constexpr bool masked = bits_per_link == 1 && masks_are_cheap;
+    static constexpr bool masked = bits_per_link == 1;
 
     // What all nodes need of a link, ready in memory where one instruction can take it: the stiffness of what is one in
     // a word; the tension times half and three halves; and where its share is in a word.
@@ -118,7 +111,7 @@ struct GridNode : Eyes<AnyPass> {
         Word bits_of[Links::count];
         FN explicit Constants(const Pass& pass) {
             for (int l = 0; l < Links::count; ++l) {
-                const float unit = masked ? 1 : one_over_whole(l);
+                const float unit = one_over_whole(l);
                 stiffness[l] = unit * pass.spring[l].stiffness;
                 tension_half[l] = 0.5f * unit * pass.spring[l].tension;
                 tension_three_halves[l] = 1.5f * unit * pass.spring[l].tension;
@@ -130,16 +123,18 @@ struct GridNode : Eyes<AnyPass> {
 
     const Constants& constants;
     const int* offsets;
+    const float *x, *y, *z;  // of the first node; the compiler keeps them where one addition finds a neighbour
     Word word[words];
     Pack ahead[3][2 * Links::reach + 1];  // from the node along each axis, in spacings: less where it is now
     Pack half_strength;
 
     FN GridNode(const Sweep& s, const AnyPass& p, const Constants& c, const Fields& from, int run, std::ptrdiff_t slot)
-        : Eyes<AnyPass>{s.body, p, s, from, slot}, constants(c), offsets(s.body.offsets + run * Links::count) {
+        : Eyes<AnyPass>{s.body, p, s, from, slot}, constants(c), offsets(s.body.offsets + run * Links::count),
+          x(from.x + slot), y(from.y + slot), z(from.z + slot) {
         const hn::RebindToUnsigned<Lanes> d;
         for (int w = 0; w < words; ++w) word[w] = hn::LoadU(d, body.words[w] + id);
         if constexpr (along_axes) {
-            const Pack3 here = load(at.x, at.y, at.z, id);
+            const Pack3 here = load(x, y, z, 0);
             for (int n = -Links::reach; n <= Links::reach; ++n) {
                 const Pack way = float(n) * body.spacing;
                 ahead[0][n + Links::reach] = way - here.x;
@@ -150,19 +145,16 @@ struct GridNode : Eyes<AnyPass> {
         if constexpr (with_strength) half_strength = load(body.half_strength + id);
     }
 
-    // A whole link is this many in its word.
+    // One over what a whole link is as a number, where it stands in its word.
     static constexpr float one_over_whole(int l) {
-        const int bit = l % per_word * bits_per_link;
-        return bit == 31 ? -1.0f / 2147483648.0f : 1.0f / float((bits_per_link == 1 ? 1 : 4) << bit);
+        return masked ? 1 : 1.0f / float(4 << (l % per_word * bits_per_link));
     }
-    FN Word of_word(int l) const { return hn::And(word[l / per_word], constants.bits_of[l]); }
     FN Pack times_share(int l, Pack a) const {
-        if constexpr (masked) {
-            const hn::RebindToUnsigned<Lanes> d;
-            return hn::IfThenElseZero(hn::RebindMask(Lanes(), hn::Ne(of_word(l), hn::Zero(d))), a.v);
-        } else {
-            return a * Pack(hn::ConvertTo(Lanes(), hn::BitCast(hn::RebindToSigned<Lanes>(), of_word(l))));
-        }
+        const Word share = hn::And(word[l / per_word], constants.bits_of[l]);
+        if constexpr (masked)
+            return hn::IfThenElseZero(hn::RebindMask(Lanes(), hn::Eq(share, constants.bits_of[l])), a.v);
+        else
+            return a * Pack(hn::ConvertTo(Lanes(), hn::BitCast(hn::RebindToSigned<Lanes>(), share)));
     }
     FN Pack stronger(int l, Pack a) const {
         if constexpr (with_strength)
@@ -172,7 +164,7 @@ struct GridNode : Eyes<AnyPass> {
     }
 
     FN Pack3 toward([[maybe_unused]] Pack3 p, int l) const {
-        const Pack3 there = load(at.x, at.y, at.z, id + offsets[l]);
+        const Pack3 there = load(x, y, z, offsets[l]);
         if constexpr (along_axes) {
             return {there.x + ahead[0][Links::along(l, 0) + Links::reach],
                     there.y + ahead[1][Links::along(l, 1) + Links::reach],
@@ -183,7 +175,7 @@ struct GridNode : Eyes<AnyPass> {
         }
     }
     FN Pack3 passing(Pack3 v, int l) const { return load(at.vx, at.vy, at.vz, id + offsets[l]) - v; }
-    FN Pack share(int l) const { return times_share(l, masked ? 1.0f : one_over_whole(l)); }
+    FN Pack share(int l) const { return times_share(l, one_over_whole(l)); }
     FN Pack neighbour(int l) const { return select(share(l) > 0.0f, Pack(1.0f), Pack(0.0f)); }
     FN Pack stiffness(int l) const { return stronger(l, pass.spring[l].stiffness); }
     FN Pack longest(int l) const { return pass.spring[l].longest; }
@@ -289,9 +281,9 @@ void pass(const Sweep& s, int first_run, int end_run, Largest& largest) {
             store_node(eyes.collect(before, node, change), total, i);
         }
         auto moved = eyes.integrate(load_node<At>(s.body, start, i), node, change);
-        const Pack3 was = load(begin.x, begin.y, begin.z, i);
-        if (eyes.pass.obstacles > 0) moved = eyes.collide(moved, was);
+        if (eyes.pass.obstacles > 0) moved = eyes.collide(moved, load(begin.x, begin.y, begin.z, i));
         if (s.turn.ends) {
+            const Pack3 was = load(begin.x, begin.y, begin.z, i);
             Pack3& p = moved.position;
             p = {on_a_multiple(p.x, s.body.finest), on_a_multiple(p.y, s.body.finest), on_a_multiple(p.z, s.body.finest)};
             speed = max(speed, dot(moved.velocity, moved.velocity));
