@@ -10,3 +10,4 @@ void add_run(CLI::App& app);
 void add_import(CLI::App& app);
 void add_info(CLI::App& app);
 void add_list(CLI::App& app);
+void add_bench(CLI::App& app);

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     add_import(app);
     add_info(app);
     add_list(app);
+    add_bench(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {

@@ -10,8 +10,8 @@ set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 
 palpate_needs(PkgConfig)
 
-# body, solver
-pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
+# solver
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET GLOBAL libhwy)
 
 # mesh
 set(palpate_itk ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGDCM)

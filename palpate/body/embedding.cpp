@@ -136,21 +136,6 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping) {
     return {std::move(vertices), std::move(in_bases)};
 }
 
-void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
-            std::vector<vec3>& normals, std::vector<vec4>* tangents) {
-    std::size_t count = 0;
-    if (const auto* framed = std::get_if<Framed>(&embedding.vertices)) count = framed->vertices.size();
-    if (const auto* in_cells = std::get_if<std::vector<InCell>>(&embedding.vertices))
-        count = in_cells->size();
-    if (const auto* on = std::get_if<std::vector<OnTriangle>>(&embedding.vertices)) count = on->size();
-    positions.resize(count);
-    normals.resize(count);
-    if (tangents) tangents->resize(embedding.tangents.size());
-    const bool carry = tangents && !tangents->empty();
-    const Carried out{positions, normals, embedding.tangents, carry ? tangents->data() : nullptr};
-    std::visit([&](const auto& vertices) { deform(vertices, nodes, out); }, embedding.vertices);
-}
-
 std::vector<vec3> approximate_normals(const Body& body, std::span<const vec3> positions) {
     const Table springs = table(body);
     std::vector<vec3> normals(body.count(), vec3(0));

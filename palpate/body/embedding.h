@@ -10,6 +10,8 @@
 
 namespace palpate {
 
+class Team;
+
 /// How a fine surface follows the nodes. All but `trilinear` hang it on the outside of the body: the hull of
 /// its cells, or its faces.
 enum class Mapping {
@@ -97,9 +99,10 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping = Mapping
 /// Positions and unit normals of the surface for the nodes' current places, and if asked its tangents: unit,
 /// at right angles to the normals, their handedness kept. Outputs are resized; tangents are empty if the mesh
 /// had none. The nodes' approximate normals are used by one-to-one, interpolated and normal-offset; the
-/// others need none. Collapsed triangles and cells give finite positions and unit normals all the same.
+/// others need none. Collapsed triangles and cells give finite positions and unit normals all the same. A team, if
+/// there is one, shares the work; it changes no bit.
 void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
-            std::vector<vec3>& normals, std::vector<vec4>* tangents = nullptr);
+            std::vector<vec3>& normals, std::vector<vec4>* tangents = nullptr, Team* team = nullptr);
 
 /// The approximate normal of every node (2005, eq. 3): the sum of the unit vectors from its neighbours, each
 /// by its link's share. Not normalised; short where the neighbours surround the node evenly and it means

@@ -88,30 +88,6 @@ class FrameMaker {
     std::vector<int> frame_of_;
 };
 
-// The gradient of the deformation at each frame.
-std::vector<mat3> gradients(const Framed& framed, std::span<const vec3> positions) {
-    std::vector<mat3> all;
-    all.reserve(framed.frames.size());
-    int spoke = 0, face = 0;
-    for (const Frame& frame : framed.frames) {
-        mat3 gradient = frame.rest;
-        for (; spoke < frame.spokes_end; ++spoke) {
-            const Spoke& s = framed.spokes[spoke];
-            gradient += glm::outerProduct(positions[s.to] - positions[frame.node], s.pull);
-        }
-        const std::span round(framed.faces.data() + face, std::size_t(frame.faces_end - face));
-        face = frame.faces_end;
-        if (!round.empty()) gradient += glm::outerProduct(normal_round(round, positions), frame.normal_pull);
-        all.push_back(gradient);
-    }
-    return all;
-}
-
-// The cofactors of m times n: where the normal n goes when m is the gradient.
-vec3 cofactors(const mat3& m, vec3 n) {
-    return n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) + n.z * glm::cross(m[0], m[1]);
-}
-
 }  // namespace
 
 Framed embed_on_frames(const Mesh& surface, const Body& body) {
@@ -134,26 +110,6 @@ Framed embed_on_frames(const Mesh& surface, const Body& body) {
         framed.vertices.push_back(vertex);
     }
     return framed;
-}
-
-void deform(const Framed& framed, const Nodes& nodes, const Carried& out) {
-    const std::vector<mat3> gradient_at = gradients(framed, nodes.positions);
-    for (std::size_t i = 0; i < framed.vertices.size(); ++i) {
-        const OnFrames& vertex = framed.vertices[i];
-        vec3 position(0);
-        mat3 mean(0);
-        for (int k = 0; k < 3; ++k) {
-            const int frame = vertex.frames[k];
-            const vec3 node = nodes.positions[framed.frames[frame].node];
-            position += vertex.weights[k] * (node + gradient_at[frame] * vertex.arms[k]);
-            mean += vertex.weights[k] * gradient_at[frame];
-        }
-        out.positions[i] = position;
-        out.normals[i] = direction(cofactors(mean, vertex.normal), vertex.normal);
-        if (!out.tangents) continue;
-        const vec4 t = out.rest_tangents[i];
-        out.tangents[i] = upright(mean * vec3(t), out.normals[i], t.w);
-    }
 }
 
 }  // namespace palpate

@@ -12,19 +12,23 @@
 
 namespace palpate {
 
-/// The unit vector along v, or `otherwise` where v has no direction.
-inline vec3 direction(vec3 v, vec3 otherwise) {
-    const float length = glm::length(v);
-    return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
-}
+/// mapping.inl for one vertex after the other.
+struct MappingText {
+    using Real = float;
+    using Real3 = vec3;
+    static float select(bool c, float a, float b) { return c ? a : b; }
+    static vec3 select(bool c, vec3 a, vec3 b) { return c ? a : b; }
+    static float x_of(vec3 v) { return v.x; }
+    static float abs(float a) { return std::abs(a); }
+    static float min(float a, float b) { return b < a ? b : a; }
+    static float inversesqrt(float a) { return 1 / std::sqrt(a); }
+#define FN static
+#include "palpate/body/mapping.inl"
+#undef FN
+};
 
-inline vec3 any_across(vec3 n) { return glm::cross(n, std::abs(n.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0)); }
-
-/// A tangent brought to right angles with the normal that it has now; its handedness stays.
-inline vec4 upright(vec3 tangent, vec3 normal, float handedness) {
-    const vec3 across = tangent - glm::dot(tangent, normal) * normal;
-    return {direction(across, direction(any_across(normal), vec3(1, 0, 0))), handedness};
-}
+inline vec3 direction(vec3 v, vec3 otherwise) { return MappingText::direction(v, otherwise); }
+inline vec3 any_across(vec3 n) { return MappingText::any_across(n); }
 
 /// A triangle of a body's outside.
 struct Facet {
@@ -138,16 +142,5 @@ Framed embed_on_frames(const Mesh& surface, const Body& body);
 /// Tangents of the surface in the bases of the vertices at rest.
 std::vector<vec4> tangents_in(std::span<const OnTriangle> vertices, const Body& body,
                               const std::vector<vec4>& tangents);
-
-/// Where deform() writes.
-struct Carried {
-    std::vector<vec3>& positions;
-    std::vector<vec3>& normals;
-    std::span<const vec4> rest_tangents;
-    vec4* tangents;  // null: not asked for
-};
-void deform(const std::vector<InCell>& vertices, const Nodes& nodes, const Carried& out);
-void deform(const std::vector<OnTriangle>& vertices, const Nodes& nodes, const Carried& out);
-void deform(const Framed& framed, const Nodes& nodes, const Carried& out);
 
 }  // namespace palpate

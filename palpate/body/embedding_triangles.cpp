@@ -3,38 +3,19 @@
 namespace palpate {
 namespace {
 
-// Three unit vectors at right angles: along the triangle, out of it, and across.
-struct Basis {
-    vec3 tangent, normal, across;
-};
+using Basis = MappingText::Followed;
 
-// An approximate normal made unit; shorter where the neighbours' unit vectors cancel and leave it to chance.
-vec3 clear_direction(vec3 normal) { return normal / std::max(glm::length(normal), 0.5f); }
-
-// 2005, eq. 6 and 8, with every vector normalised (the paper's N, B and Nc are not of unit length unless the
-// triangle has a right angle). Eq. 8's order, Bc = Nc × T and Tc = Bc × Nc, is kept. A collapsed triangle
-// takes what is still defined, and the world's axes for the rest.
 Basis basis(const OnTriangle& vertex, const Nodes& nodes) {
     const auto [a, b, c] = vertex.nodes;
-    const vec3 p = nodes.positions[a], q = nodes.positions[b], r = nodes.positions[c];
-    vec3 normal = direction(glm::cross(q - p, r - p), vec3(0));
-    if (vertex.curvature > 0) {
-        vec3 sum(0);
+    vec3 approximate(0);
+    if (vertex.curvature > 0)
         for (int k = 0; k < 3; ++k)
-            sum += vertex.weights[k] * clear_direction(nodes.normals[vertex.nodes[k]]);
-        const vec3 approximate = glm::length(sum) > 0.05f ? glm::normalize(sum) : normal;
-        normal = glm::mix(normal, approximate, vertex.curvature);
-    }
-    normal = direction(normal, vec3(0, 0, 1));
-    const vec3 along = direction(q - p, any_across(normal));
-    const vec3 across = direction(glm::cross(normal, along), direction(any_across(normal), vec3(1, 0, 0)));
-    return {glm::cross(across, normal), normal, across};
+            approximate += vertex.weights[k] * MappingText::clear_direction(nodes.normals[vertex.nodes[k]]);
+    return MappingText::on_triangle(nodes.positions[a], nodes.positions[b], nodes.positions[c], approximate,
+                                    vertex.curvature);
 }
 
-vec3 express(vec3 v, const Basis& b) {
-    return {glm::dot(v, b.tangent), glm::dot(v, b.normal), glm::dot(v, b.across)};
-}
-vec3 expand(vec3 v, const Basis& b) { return v.x * b.tangent + v.y * b.normal + v.z * b.across; }
+vec3 express(vec3 v, const Basis& b) { return {glm::dot(v, b.x), glm::dot(v, b.y), glm::dot(v, b.z)}; }
 
 vec3 reference(const OnTriangle& vertex, std::span<const vec3> nodes) {
     vec3 sum(0);
@@ -102,7 +83,7 @@ class Hanger {
         dvec3 at[3], up[3];
         for (int k = 0; k < 3; ++k) {
             at[k] = dvec3(body_.positions[facet.nodes[k]]);
-            up[k] = dvec3(clear_direction(approximate_[facet.nodes[k]]));
+            up[k] = dvec3(MappingText::clear_direction(approximate_[facet.nodes[k]]));
         }
         // The volume that the vertex spans with the triangle lifted by t, and how it grows with t.
         const dvec3 ab = at[1] - at[0], ac = at[2] - at[0], ab_up = up[1] - up[0], ac_up = up[2] - up[0];
@@ -120,7 +101,7 @@ class Hanger {
             const vec3 lifted[] = {at[0] + t * up[0], at[1] + t * up[1], at[2] + t * up[2]};
             const vec3 weights = nearest_weights(v, lifted[0], lifted[1], lifted[2]);
             const OnTriangle stand{facet.nodes, weights, vec3(0), vec3(0), 1};
-            const vec3 normal = basis(stand, rest()).normal, over = v - reference(stand, body_.positions);
+            const vec3 normal = basis(stand, rest()).y, over = v - reference(stand, body_.positions);
             const float height = glm::dot(over, normal), aside = glm::length(over - height * normal);
             if (aside < best.aside) best = {weights, height, aside};
             const double slope = growth(t);
@@ -160,18 +141,6 @@ std::vector<vec4> tangents_in(std::span<const OnTriangle> vertices, const Body& 
     for (std::size_t i = 0; i < vertices.size(); ++i)
         in_bases.emplace_back(express(vec3(tangents[i]), basis(vertices[i], rest)), tangents[i].w);
     return in_bases;
-}
-
-void deform(const std::vector<OnTriangle>& vertices, const Nodes& nodes, const Carried& out) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const OnTriangle& vertex = vertices[i];
-        const Basis b = basis(vertex, nodes);
-        out.positions[i] = reference(vertex, nodes.positions) + expand(vertex.offset, b);
-        out.normals[i] = direction(expand(vertex.normal, b), b.normal);
-        if (!out.tangents) continue;
-        const vec4 t = out.rest_tangents[i];
-        out.tangents[i] = upright(expand(vec3(t), b), out.normals[i], t.w);
-    }
 }
 
 }  // namespace palpate

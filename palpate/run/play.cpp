@@ -72,7 +72,12 @@ Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double secon
 }
 
 Play::Play(const Scene& scene, const Models& made, Report& report)
-    : scene_(scene), made_(made), report_(report), skins_(made.models.size()), tools_(scene.tools.size()) {
+    : scene_(scene),
+      made_(made),
+      report_(report),
+      team_(made.simulation.threads),
+      skins_(made.models.size()),
+      tools_(scene.tools.size()) {
     Simulation simulation = made.simulation;
     simulation.frame = frame_seconds;
     for (const Model& model : made.models) {
@@ -180,7 +185,8 @@ bool Play::step(double seconds, const Acting& on) {
 void Play::map() {
     Timed timed(report_.seconds.map);
     for (std::size_t m = 0; m < skins_.size(); ++m)
-        deform(made_.models[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals);
+        deform(made_.models[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals,
+               nullptr, &team_);
 }
 
 void Play::record(const Acting& on, double time, double seconds) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/base/team.h"
 #include "palpate/run/grip.h"
 #include "palpate/run/report.h"
 #include "palpate/run/tip.h"
@@ -59,6 +60,7 @@ class Play {
     Report& report_;
     std::vector<std::unique_ptr<Solver>> solvers_;
     std::vector<Stats> stats_;
+    Team team_;  // that carries the skins
     std::vector<Skin> skins_;
     std::vector<std::variant<Tip, Grip>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;

@@ -169,6 +169,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     report.scene = scene.name;
     report.backend = name_of(scene.simulation.backend);
     report.integrator = name_of(scene.simulation.integrator);
+    report.threads = scene.simulation.threads;
     check_outputs(settings);
 
     const Models made = build(scene, progress);

@@ -221,6 +221,9 @@ void check(Scene& scene, const Source& source) {
     if (scene.colliders.size() > 16) source.fail(0, "more than 16 colliders", "use fewer");
     if (const auto* name = std::get_if<std::string>(&scene.look_at); name && !names.contains(*name))
         source.fail(0, "camera.look_at names no body: " + *name, "name one of the bodies, or give a point");
+    if (scene.simulation.threads < 1 || scene.simulation.threads > most_threads)
+        source.fail(0, fmt::format("{} threads", scene.simulation.threads),
+                    fmt::format("choose 1 to {}; no more than the machine has cores", most_threads));
     if (!(scene.simulation.air >= 0)) source.fail(0, "the air's density is negative", "1.2 is usual");
     if (!(scene.duration > 0 && scene.duration <= 1e6))
         source.fail(0, "duration is not above zero", "give it in seconds");

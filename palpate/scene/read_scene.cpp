@@ -272,6 +272,7 @@ void read_fields(Reader& read, Scene& scene, const Source& source) {
     std::optional<float> air;
     read.table("simulation", [&](Reader& inside) {
         inside("backend", scene.simulation.backend);
+        inside("threads", scene.simulation.threads);
         inside("integrator", scene.simulation.integrator);
         read_step(inside, scene.simulation.step);
         inside("gravity", scene.simulation.gravity);

@@ -8,7 +8,7 @@ namespace palpate {
 
 bool needs(const Scheme& scheme, Where where) {
     switch (where) {
-        case now:
+        case current:
         case between:
             return true;
         case further:

@@ -4,10 +4,10 @@
 
 namespace palpate {
 
-/// The states of a body that a backend keeps. A step begins at `now`. Its passes write between and further by turns;
-/// the last of several writes over `now`, whose neighbours nobody looks at any more. The only one of a step writes
+/// The states of a body that a backend keeps. A step begins at `current`. Its passes write between and further by turns;
+/// the last of several writes over `current`, whose neighbours nobody looks at any more. The only one of a step writes
 /// between, and the two change places.
-enum Where { now, between, further, sum };
+enum Where { current, between, further, sum };
 
 /// Which of them a scheme needs, so that a backend keeps no more: a node costs as much for each.
 bool needs(const Scheme& scheme, Where where);
@@ -36,7 +36,7 @@ struct Call {
     void for_each_pass(Pass pass, Run run) const {
         for (int i = 0; i < steps; ++i) {
             double reached = 0;  // by the last stage, in steps
-            Where at = now;
+            Where at = current;
             for (const Stage& stage : scheme.stages) {
                 const bool last = &stage == &scheme.stages.back();
                 const double behind = i == 0 ? lag : lag_after();
@@ -50,8 +50,8 @@ struct Call {
                 pass.last = last;
                 pass.duration = float(reached * step);
                 place_obstacles(pass, simulation, influences, (i + reached) * step);
-                const Where next = last && at != now ? now : at == between ? further : between;
-                run(pass, Turn{stage.from_sum ? sum : now, at, next, at == now, last && i + 1 == steps, impulse});
+                const Where next = last && at != current ? current : at == between ? further : between;
+                run(pass, Turn{stage.from_sum ? sum : current, at, next, at == current, last && i + 1 == steps, impulse});
                 at = next;
             }
         }

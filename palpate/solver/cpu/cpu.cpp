@@ -23,7 +23,7 @@ class Cpu final : public Solver {
           laid_(body_, simulation_, kernels_.lanes),
           quiet_(make_pass(body, simulation)),
           team_(simulation.threads) {
-        for (Where where : {now, between, further, sum})
+        for (Where where : {current, between, further, sum})
             if (needs(scheme_, where)) states_[where] = fields(where == between && velocities_stay());
         before_ = fields(false);
         for (std::size_t i = 0; i < body_.count(); ++i)
@@ -43,10 +43,10 @@ class Cpu final : public Solver {
         const double lag_before = lag_;
         lag_ = call.lag_after();
         const bool torn = go(call, stats);
-        if (scheme_.stages.size() == 1 && stats.steps % 2 == 1) std::swap(states_[now], states_[between]);
+        if (scheme_.stages.size() == 1 && stats.steps % 2 == 1) std::swap(states_[current], states_[between]);
         published_ = false;
         if (torn) {
-            for_each_field([&](float* Fields::* f) { copy(before_.*f, states_[now].*f, 0, laid_.layout().slots); });
+            for_each_field([&](float* Fields::* f) { copy(before_.*f, states_[current].*f, 0, laid_.layout().slots); });
             lag_ = lag_before;
             Stats failed;
             failed.steps = stats.steps, failed.step = stats.step, failed.diverged = true;
@@ -79,7 +79,7 @@ class Cpu final : public Solver {
         State state;
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const int s = laid_.layout().slot[i];
-            const Fields& f = states_[now];
+            const Fields& f = states_[current];
             state.positions.push_back(dvec3(body_.positions[i]) + dvec3(f.x[s], f.y[s], f.z[s]));
             state.velocities.push_back(dvec3(f.vx[s], f.vy[s], f.vz[s]));
         }
@@ -117,7 +117,7 @@ class Cpu final : public Solver {
     }
 
     Fields fields(bool with_velocities_of_now) {
-        Fields made = states_[now];
+        Fields made = states_[current];
         int number = 0;
         for_each_field([&](float* Fields::* f) {
             if (with_velocities_of_now && number++ >= 3) return;
@@ -163,14 +163,14 @@ class Cpu final : public Solver {
             Fields states[4];
             std::copy(std::begin(states_), std::end(states_), states);
             for_each_field([&](float* Fields::* f) {
-                copy(states[now].*f, before_.*f, slot_of_run(first), slot_of_run(end));
+                copy(states[current].*f, before_.*f, slot_of_run(first), slot_of_run(end));
             });
             call.for_each_pass(constant, [&](const Pass& pass, const Turn& turn) {
                 const Sweep sweep{laid_.view(), pass, turn, states, dragged};
                 if (touched && turn.impulse > 0) kernels_.give(sweep, first, end, given_.data());
                 kernels_.pass(sweep, first, end, largest[std::size_t(member)]);
                 team_.meet();
-                if (pass.last && turn.next != now) std::swap(states[now], states[turn.next]);
+                if (pass.last && turn.next != current) std::swap(states[current], states[turn.next]);
             });
             const Sweep last{laid_.view(), quiet_, at_now, states, dragged};
             if (kernels_.torn(last, first, end)) torn = true;
@@ -202,7 +202,7 @@ class Cpu final : public Solver {
             arrays.emplace_back(laid_.layout(), int(arrays.size()));
             brought_up.*f = arrays.back().data();
         });
-        const Fields states[] = {states_[now], brought_up, {}, {}};
+        const Fields states[] = {states_[current], brought_up, {}, {}};
         const Sweep sweep{laid_.view(), pass, at_now, states, {}};
         Largest none;
         kernels_.pass(sweep, 0, int(laid_.layout().runs.size()), none);
@@ -217,7 +217,7 @@ class Cpu final : public Solver {
         for (int i : pinned_) set_velocity(std::size_t(i), dvec3(0));
         for_each_moved(moves, [&](std::size_t i, dvec3 to) {
             const int s = laid_.layout().slot[i];
-            const Fields& f = states_[now];
+            const Fields& f = states_[current];
             const dvec3 from = dvec3(body_.positions[i]) + dvec3(f.x[s], f.y[s], f.z[s]);
             set_velocity(i, (to - from) / seconds);
         });
@@ -239,17 +239,17 @@ class Cpu final : public Solver {
         for (int k = 0; k < 3; ++k)
             if (std::abs(way[k]) < large) way[k] = finest * std::round(way[k] / finest);
         const int s = laid_.layout().slot[i];
-        const Fields& f = states_[now];
+        const Fields& f = states_[current];
         f.x[s] = float(way.x), f.y[s] = float(way.y), f.z[s] = float(way.z);
     }
     void set_velocity(std::size_t i, dvec3 v) {
         const int s = laid_.layout().slot[i];
-        const Fields& f = states_[now];
+        const Fields& f = states_[current];
         f.vx[s] = float(v.x), f.vy[s] = float(v.y), f.vz[s] = float(v.z);
     }
 
     void publish() const {
-        const Fields &at = states_[now], &free = states_[between];  // between calls nobody needs it
+        const Fields &at = states_[current], &free = states_[between];  // between calls nobody needs it
         const Sweep sweep{laid_.view(), quiet_, at_now, states_, {}};
         kernels_.normals(sweep, 0, int(laid_.layout().runs.size()), free.x, free.y, free.z);
         positions_.resize(body_.count());
@@ -262,7 +262,7 @@ class Cpu final : public Solver {
         published_ = true;
     }
 
-    static constexpr Turn at_now{now, now, between, true, false, 0};
+    static constexpr Turn at_now{current, current, between, true, false, 0};
 
     const Body body_;
     const Simulation simulation_;

@@ -271,7 +271,7 @@ template <class At>
 void pass(const Sweep& s, int first_run, int end_run, Largest& largest) {
     const Pass& pass = s.pass;
     const Fields start = s.states[s.turn.start], at = s.states[s.turn.at], next = s.states[s.turn.next];
-    const Fields begin = s.states[now], total = s.states[sum];
+    const Fields begin = s.states[current], total = s.states[sum];
     Pack speed = 0.0f, move = 0.0f;
     for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int, std::ptrdiff_t i) HWY_ATTR {
         const auto node = load_node<At>(s.body, at, i);

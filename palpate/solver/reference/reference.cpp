@@ -93,7 +93,7 @@ class Reference final : public Solver {
         // Where there is no spring its end is the node itself, and it pulls at nothing.
         for (std::size_t t = 0; t < world_.springs.ties.size(); ++t)
             if (int& to = world_.springs.ties[t].to; to < 0) to = int(t) / world_.springs.width;
-        Moving<Real>& begin = states_[now];
+        Moving<Real>& begin = states_[current];
         for (vec3 p : body.positions) begin.positions.push_back(Real3(p));
         begin.velocities.assign(body.count(), Real3(0));
         for (Where where : {between, further, sum})
@@ -118,7 +118,7 @@ class Reference final : public Solver {
         call.for_each_pass(world_.pass, [&](const Pass& pass, const Turn& turn) {
             count_impulses(pass, turn, stats);
             pass_over_nodes(pass, turn, stats);
-            if (pass.last && turn.next != now) std::swap(states_[now], states_[turn.next]);
+            if (pass.last && turn.next != current) std::swap(states_[current], states_[turn.next]);
         });
         lag_ = call.lag_after();
         if (torn()) {
@@ -148,8 +148,8 @@ class Reference final : public Solver {
 
     State save() const override {
         State state;
-        for (Real3 p : states_[now].positions) state.positions.push_back(dvec3(p));
-        for (Real3 v : states_[now].velocities) state.velocities.push_back(dvec3(v));
+        for (Real3 p : states_[current].positions) state.positions.push_back(dvec3(p));
+        for (Real3 v : states_[current].velocities) state.velocities.push_back(dvec3(v));
         state.lag = lag_;
         return state;
     }
@@ -157,14 +157,14 @@ class Reference final : public Solver {
     void restore(const State& state) override {
         assert(state.positions.size() == body_.count() && state.velocities.size() == body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {
-            states_[now].positions[i] = Real3(state.positions[i]);
-            states_[now].velocities[i] = Real3(state.velocities[i]);
+            states_[current].positions[i] = Real3(state.positions[i]);
+            states_[current].velocities[i] = Real3(state.velocities[i]);
         }
         lag_ = state.lag;
         if (lag_ > 0 && !scheme_.staggered) {  // a staggered scheme's state: this one wants velocities of now
             std::vector<Real3>& velocities = states_[between].velocities;
             for (std::size_t i = 0; i < body_.count(); ++i) velocities[i] = velocity_now(i);
-            std::swap(states_[now].velocities, velocities);
+            std::swap(states_[current].velocities, velocities);
             lag_ = 0;
         }
         publish();
@@ -179,10 +179,10 @@ class Reference final : public Solver {
  private:
     // The velocity at the time of the positions: half a kick brings up what lies `lag` behind.
     Real3 velocity_now(std::size_t i) const {
-        const Node node = load(states_[now], i);
+        const Node node = load(states_[current], i);
         if (!(lag_ > 0 && node.inverse_mass > 0)) return node.velocity;
         const double kick = lag_ / (1 + body_.damping * lag_);
-        return node.velocity + Real(kick) * see(i, states_[now], quiet_).acceleration(node);
+        return node.velocity + Real(kick) * see(i, states_[current], quiet_).acceleration(node);
     }
 
     void pass_over_nodes(const Pass& pass, const Turn& turn, Stats& stats) {
@@ -193,7 +193,7 @@ class Reference final : public Solver {
             const Node node = load(at, i);
             const Real3 change = pass.kick > 0 ? eyes.acceleration(node) : Real3(0);
             if (pass.part > 0) put(eyes.collect(load(turn.opens ? at : total, i), node, change), total, i);
-            const Real3 was = states_[now].positions[i];
+            const Real3 was = states_[current].positions[i];
             const Node moved = eyes.collide(eyes.integrate(load(start, i), node, change), was);
             put(moved, next, i);
             if (!turn.ends) continue;
@@ -219,12 +219,12 @@ class Reference final : public Solver {
     // Gives the nodes of prescribed motion the velocities that bring them where they shall be.
     void send_off(std::span<const Move> moves, double seconds) {
         for (std::size_t i = 0; i < body_.count(); ++i)
-            if (!(body_.inverse_mass[i] > 0)) states_[now].velocities[i] = Real3(0);
+            if (!(body_.inverse_mass[i] > 0)) states_[current].velocities[i] = Real3(0);
         for (const Move& move : moves)
             for (std::size_t k = 0; k < move.nodes.size(); ++k) {
                 const std::size_t i = std::size_t(move.nodes[k]);
                 if (body_.inverse_mass[i] > 0) continue;
-                states_[now].velocities[i] = (Real3(move.to[k]) - states_[now].positions[i]) / Real(seconds);
+                states_[current].velocities[i] = (Real3(move.to[k]) - states_[current].positions[i]) / Real(seconds);
             }
     }
 
@@ -233,7 +233,7 @@ class Reference final : public Solver {
         for (const Move& move : moves)
             for (std::size_t k = 0; k < move.nodes.size(); ++k)
                 if (!(body_.inverse_mass[std::size_t(move.nodes[k])] > 0))
-                    states_[now].positions[std::size_t(move.nodes[k])] = Real3(move.to[k]);
+                    states_[current].positions[std::size_t(move.nodes[k])] = Real3(move.to[k]);
     }
 
     At see(std::size_t i, const Moving<Real>& at, const Pass& pass) const {
@@ -254,7 +254,7 @@ class Reference final : public Solver {
     }
 
     bool torn() const {
-        const Moving<Real>& at = states_[now];
+        const Moving<Real>& at = states_[current];
         for (std::size_t i = 0; i < body_.count(); ++i)
             if (see(i, at, quiet_).torn(at.positions[i]) > 0) return true;
         return false;
@@ -262,10 +262,10 @@ class Reference final : public Solver {
 
     void publish() {
         positions_.clear();
-        for (Real3 p : states_[now].positions) positions_.push_back(vec3(p));
+        for (Real3 p : states_[current].positions) positions_.push_back(vec3(p));
         normals_.clear();
         for (std::size_t i = 0; i < body_.count(); ++i)
-            normals_.push_back(vec3(see(i, states_[now], quiet_).outward(states_[now].positions[i])));
+            normals_.push_back(vec3(see(i, states_[current], quiet_).outward(states_[current].positions[i])));
     }
 
     const Body body_;

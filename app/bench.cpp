@@ -1,0 +1,87 @@
+#include "app/commands.h"
+#include "bench/speed/speed.h"
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/solver/cpu/cpu.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <thread>
+
+namespace {
+
+using namespace palpate;
+using namespace palpate::speed;
+
+struct Arguments {
+    std::vector<std::string> names;
+    std::filesystem::path json;
+    int rounds = 15;
+};
+
+// As the kernel names it, where it does.
+std::string processor() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with("model name"))
+            if (const auto colon = line.find(": "); colon != std::string::npos) return line.substr(colon + 2);
+    return "an unnamed processor";
+}
+
+nlohmann::json described(const Timings& timings) {
+    nlohmann::json limits = nlohmann::json::array(), cases = nlohmann::json::array();
+    for (std::size_t t = 0; t < timings.arithmetic.size(); ++t)
+        limits.push_back({{"threads", t + 1},
+                          {"links_per_second", timings.arithmetic[t].best},
+                          {"copy_bytes_per_second", timings.copying[t].best}});
+    for (std::size_t c = 0; c < timings.cases.size(); ++c)
+        cases.push_back({{"name", timings.cases[c].name},
+                         {"threads", timings.cases[c].threads},
+                         {"best_per_second", timings.rates[c].best},
+                         {"median_per_second", timings.rates[c].median},
+                         {"links_each", timings.cases[c].links},
+                         {"bytes_each", timings.cases[c].bytes}});
+    return {{"limits", limits}, {"cases", cases}};
+}
+
+void run_benchmarks(const Arguments& arguments) {
+    const unsigned cores = std::thread::hardware_concurrency();
+    fmt::print("Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
+               processor(), cores, cores == 1 ? "" : "s", cpu_instructions(), arguments.rounds);
+    nlohmann::json all;
+    for (const Benchmark& benchmark : benchmarks()) {
+        const auto& wanted = arguments.names;
+        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), benchmark.name) == wanted.end()) continue;
+        const Timings timings = time(benchmark.cases(), arguments.rounds);
+        fmt::print("\n### {}: {}\n\n{}", benchmark.name, benchmark.about, markdown(timings, benchmark.unit));
+        std::fflush(stdout);
+        all[benchmark.name] = described(timings);
+    }
+    if (!arguments.json.empty()) {
+        all["processor"] = processor();
+        all["cores"] = cores;
+        all["instructions"] = cpu_instructions();
+        write_text(arguments.json, all.dump(2) + "\n");
+    }
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command = app.add_subcommand("bench", "Time Palpate against the limits of this machine");
+    std::vector<std::string> names;
+    for (const Benchmark& benchmark : benchmarks()) names.push_back(benchmark.name);
+    command->add_option("names", arguments->names, "which: lattice, cloth, embed; all, if none is named")
+        ->check(CLI::IsMember(names));
+    command->add_option("--rounds", arguments->rounds, "how often each case runs, by turns")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->add_option("--json", arguments->json, "write the figures, JSON");
+    command->callback([arguments] { run_benchmarks(*arguments); });
+}

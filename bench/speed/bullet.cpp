@@ -1,0 +1,64 @@
+// Bullet's soft body, where libbullet-dev was there when Palpate was built.
+#include "bench/speed/speed.h"
+
+#ifdef PALPATE_BULLET
+#include "palpate/base/clock.h"
+
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodySolvers.h>
+
+#include <memory>
+#endif
+
+namespace palpate::speed {
+
+#ifdef PALPATE_BULLET
+namespace {
+
+// As fast as it can be set: one iteration over the links, and no collisions.
+struct Soft {
+    btSoftBodyWorldInfo world;
+    std::unique_ptr<btSoftBody> body;
+
+    explicit Soft(const Body& of) {
+        std::vector<btVector3> at;
+        std::vector<btScalar> masses;
+        for (std::size_t i = 0; i < of.count(); ++i) {
+            at.emplace_back(of.positions[i].x, of.positions[i].y, of.positions[i].z);
+            masses.push_back(of.inverse_mass[i] > 0 ? 1 / of.inverse_mass[i] : 0);
+        }
+        world.m_gravity = btVector3(0, -9.81f, 0);
+        body = std::make_unique<btSoftBody>(&world, int(of.count()), at.data(), masses.data());
+        for (uvec2 ends : spring_ends(of)) body->appendLink(int(ends.x), int(ends.y));
+        body->m_cfg.piterations = 1;
+        body->m_cfg.collisions = 0;
+        body->m_cfg.kDP = 0.01f;
+    }
+};
+
+}  // namespace
+
+std::vector<Case> bullet(const Body& body) {
+    auto soft = std::make_shared<Soft>(body);
+    const double nodes = double(body.count()), links = double(soft->body->m_links.size()) / nodes;
+    auto timed = [=](int times, auto once) {
+        return [=] {
+            const double start = now();
+            for (int i = 0; i < times; ++i) once(*soft->body);
+            return Work{now() - start, times * nodes};
+        };
+    };
+    return {{"Bullet: its links once, moved by projection", timed(10, [](btSoftBody& b) { btSoftBody::PSolve_Links(&b, 1, 1); }), links, 0, 1},
+            {"Bullet: a step", timed(4,
+                                     [](btSoftBody& b) {
+                                         b.predictMotion(1e-3f);
+                                         b.solveConstraints();
+                                         b.integrateMotion();
+                                     }),
+             links, 0, 1}};
+}
+#else
+std::vector<Case> bullet(const Body&) { return {}; }
+#endif
+
+}  // namespace palpate::speed

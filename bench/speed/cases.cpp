@@ -1,0 +1,158 @@
+#include "bench/speed/speed.h"
+#include "palpate/base/clock.h"
+#include "palpate/base/error.h"
+#include "palpate/base/team.h"
+#include "palpate/body/cloth.h"
+#include "palpate/body/embedding.h"
+#include "palpate/body/lattice.h"
+#include "palpate/body/select.h"
+#include "palpate/scene/build.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <thread>
+
+namespace palpate::speed {
+namespace {
+
+const Material tissue{.youngs_modulus = 10'000, .density = 1040, .damping = 5};
+const ClothSettings linen{.density = 0.15f, .damping = 2};
+
+Simulation with(Backend backend, int threads = 1, Integrator integrator = Integrator::verlet) {
+    return {.backend = backend, .threads = threads, .integrator = integrator};
+}
+
+// Every link whole, as in 2005; one corner pinned.
+Body whole_box(int nodes) {
+    Body box = lattice(ivec3(nodes), 0.01f, tissue);
+    Stencil& stencil = std::get<Stencil>(box.springs);
+    for (std::size_t i = 0; i < box.count(); ++i)
+        for (std::size_t l = 0; l < stencil.links.size(); ++l)
+            if (stencil.quarters(i, l) > 0) {
+                stencil.shares[i] &= ~(std::uint64_t(7) << 3 * l);
+                stencil.shares[i] |= std::uint64_t(4) << 3 * l;
+            }
+    for (int i = 0; i < nodes; ++i) box.inverse_mass[std::size_t(i)] = 0;
+    return box;
+}
+
+// A ball of `rings` times twice as many quadrilaterals, cut in two.
+Mesh ball(float radius, unsigned rings) {
+    Mesh mesh;
+    const unsigned around = 2 * rings;
+    const float pi = 3.14159265f;
+    mesh.positions.push_back({0, 0, radius});
+    for (unsigned r = 1; r < rings; ++r)
+        for (unsigned a = 0; a < around; ++a) {
+            const float polar = pi * float(r) / float(rings), turn = 2 * pi * float(a) / float(around);
+            mesh.positions.push_back(
+                radius * vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)));
+        }
+    mesh.positions.push_back({0, 0, -radius});
+    const unsigned last = unsigned(mesh.positions.size()) - 1;
+    auto at = [&](unsigned r, unsigned a) { return 1 + (r - 1) * around + a % around; };
+    for (unsigned a = 0; a < around; ++a) {
+        mesh.triangles.push_back({0u, at(1, a), at(1, a + 1)});
+        mesh.triangles.push_back({last, at(rings - 1, a + 1), at(rings - 1, a)});
+        for (unsigned r = 1; r + 1 < rings; ++r) {
+            mesh.triangles.push_back({at(r, a), at(r + 1, a), at(r + 1, a + 1)});
+            mesh.triangles.push_back({at(r, a), at(r + 1, a + 1), at(r, a + 1)});
+        }
+    }
+    compute_normals(mesh);
+    return mesh;
+}
+
+// The surface carried by nodes that do not move: that costs as much.
+Case carrying(std::string name, const Mesh& surface, const Body& body, Mapping mapping, int threads, double bytes) {
+    struct Carried {
+        Embedding skin;
+        std::vector<vec3> nodes, normals, positions, turned;
+        Team team;
+        explicit Carried(int members) : team(members) {}
+    };
+    auto all = std::make_shared<Carried>(threads);
+    all->skin = embed(surface, body, mapping);
+    all->nodes = body.positions;
+    all->normals = approximate_normals(body, body.positions);
+    const double vertices = double(surface.positions.size());
+    return {std::move(name),
+            [=] {
+                const double start = palpate::now();
+                for (int i = 0; i < 10; ++i)
+                    deform(all->skin, {all->nodes, all->normals}, all->positions, all->turned, nullptr,
+                           threads > 1 ? &all->team : nullptr);
+                return Work{palpate::now() - start, 10 * vertices};
+            },
+            0, bytes, threads};
+}
+
+}  // namespace
+
+std::vector<Case> lattice_cases() {
+    const Body box = lattice(ivec3(27), 0.01f, tissue), large = lattice(ivec3(64), 0.01f, tissue);
+    std::vector<Case> cases;
+    auto add = [&](const std::string& name, const Body& body, const Simulation& how) {
+        cases.push_back(stepping(name, body, how));
+    };
+    add("27³, whole links", whole_box(27), with(Backend::cpu));
+    add("27³, shares", box, with(Backend::cpu));
+    add("27³, shares, 2 threads", box, with(Backend::cpu, 2));
+    add("64³, shares", large, with(Backend::cpu));
+    add("64³, shares, 2 threads", large, with(Backend::cpu, 2));
+    add("ball of 20,000 nodes", lattice(ball(0.1f, 60), {.nodes = 20'000, .material = tissue}), with(Backend::cpu));
+    try {
+        const Scene scene = read_scene("brain");
+        add("brain of 20,000 nodes", build(scene).models.front().body, with(Backend::cpu));
+    } catch (const Error& error) {
+        fmt::print(stderr, "brain: not available: {}\n", error.what());
+    }
+    Body hard = box;
+    strengthen(hard, std::vector<float>(box.count(), 1.5f));
+    add("27³, a stiffness for each node", hard, with(Backend::cpu));
+    add("27³, 32 links (2012)", lattice(ivec3(27), 0.01f, SpringKinds{100, 50, 10}, {.mass = 1, .damping = 5}),
+        with(Backend::cpu));
+    Body written = box;
+    written.springs = table(box);
+    add("27³, springs in a table", written, with(Backend::cpu));
+    for (const auto& [integrator, name] : names(Integrator{}))
+        if (integrator != Integrator::verlet)
+            add(fmt::format("27³, {}", name), box, with(Backend::cpu, 1, integrator));
+    add("27³, the scalar reference", box, with(Backend::reference));
+    for (Case& of : bullet(box)) cases.push_back(std::move(of));
+    return cases;
+}
+
+std::vector<Case> cloth_cases() {
+    std::vector<Case> cases;
+    for (int size : {128, 512})
+        for (int threads : {1, 2})
+            cases.push_back(stepping(fmt::format("{}², {} thread{}", size, threads, threads > 1 ? "s" : ""),
+                                     cloth(ivec2(size), 0.01f, linen), with(Backend::cpu, threads)));
+    ClothSettings damped = linen;
+    damped.link_damping = 1e-4f;
+    cases.push_back(stepping("128², damping along the springs", cloth(ivec2(128), 0.01f, damped), with(Backend::cpu)));
+    const Body sheet = cloth(ivec2(128), 0.01f, linen);
+    cases.push_back(stepping("128² of triangles", cloth(face_mesh(sheet), linen), with(Backend::cpu)));
+    cases.push_back(stepping("128², the scalar reference", sheet, with(Backend::reference)));
+    return cases;
+}
+
+std::vector<Case> embed_cases() {
+    const Mesh surface = ball(0.1f, 283);  // 159,614 vertices
+    const Body body = lattice(surface, {.nodes = 20'000, .material = tissue});
+    constexpr double written = 2 * sizeof(vec3);
+    std::vector<Case> cases;
+    for (int threads : {1, 2}) {
+        const std::string on = threads > 1 ? ", 2 threads" : "";
+        cases.push_back(carrying("trilinear" + on, surface, body, Mapping::trilinear, threads, sizeof(InCell) + written));
+        cases.push_back(carrying("frames" + on, surface, body, Mapping::frames, threads, sizeof(OnFrames) + written));
+        cases.push_back(carrying("interpolated" + on, surface, body, Mapping::interpolated, threads, sizeof(OnTriangle) + written));
+        cases.push_back(carrying("constant" + on, surface, body, Mapping::constant, threads, sizeof(OnTriangle) + written));
+    }
+    return cases;
+}
+
+}  // namespace palpate::speed

@@ -1,0 +1,119 @@
+#include "bench/speed/speed.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/solver/scheme.h"
+#include "palpate/solver/solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+namespace palpate::speed {
+namespace {
+
+Rate rate_of(std::vector<double> rates) {
+    if (rates.empty()) return {};
+    std::sort(rates.begin(), rates.end());
+    return {rates.back(), rates[rates.size() / 2]};
+}
+
+// Read or written by the passes of a step, with nothing fetched twice: the state where forces are taken, that where the
+// step began, the sum, the shares of 18 links (eight bytes) and the inverse mass.
+double bytes_of_a_step(Integrator integrator) {
+    constexpr double state = 24, fixed = 12;
+    double bytes = 0;
+    for (const Stage& stage : scheme(integrator).stages) {
+        const bool first = &stage == &scheme(integrator).stages.front();
+        bytes += state + fixed + state;                                 // at, next
+        bytes += first ? 0 : state;                                     // where it began, or the sum
+        bytes += stage.part > 0 ? (first ? state : 2 * state) : 0;      // to the sum
+    }
+    return bytes;
+}
+
+}  // namespace
+
+Timings time(std::vector<Case> cases, int rounds) {
+    const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<std::vector<double>> rates(cases.size()), links(most), bytes(most);
+    auto run = [](const std::function<Work()>& work, std::vector<double>& into) {
+        const Work done = work();
+        into.push_back(done.amount / done.seconds);
+    };
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t t = 0; t < most; ++t) {
+            run([&] { return arithmetic(int(t) + 1); }, links[t]);
+            run([&] { return copying(int(t) + 1); }, bytes[t]);
+        }
+        for (std::size_t c = 0; c < cases.size(); ++c) run(cases[c].run, rates[c]);
+    }
+    Timings timings{std::move(cases), {}, {}, {}};
+    for (auto& list : rates) timings.rates.push_back(rate_of(list));
+    for (auto& list : links) timings.arithmetic.push_back(rate_of(list));
+    for (auto& list : bytes) timings.copying.push_back(rate_of(list));
+    return timings;
+}
+
+Case stepping(std::string name, const Body& body, const Simulation& how) {
+    Simulation simulation = how;
+    simulation.step = 1e-5;
+    simulation.force = true;
+    simulation.frame = 1e-3;
+    std::shared_ptr<Solver> solver = make_solver(body, simulation);
+    const double nodes = double(body.count());
+    // About a twentieth of a second, found by trying.
+    solver->step(simulation.step);
+    const double begin = now();
+    solver->step(4 * simulation.step);
+    const int steps = std::clamp(int(0.05 / ((now() - begin) / 4)), 2, 100);
+    double springs = 0;
+    for (const Tie& tie : table(body).ties) springs += tie.share > 0;
+    return {std::move(name),
+            [=] {
+                const double start = now();
+                const Stats stats = solver->step(steps * simulation.step);
+                return Work{now() - start, nodes * stats.steps};
+            },
+            springs / nodes * double(scheme(simulation.integrator).stages.size() -
+                                     (simulation.integrator == Integrator::verlet_midpoint)),
+            bytes_of_a_step(simulation.integrator), simulation.threads};
+}
+
+std::string markdown(const Timings& timings, const std::string& unit) {
+    std::string text = fmt::format(
+        "| | {} a second: best | median | links a second | bytes each | of the arithmetic limit | of a copy |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n",
+        unit);
+    auto millions = [](double a) { return fmt::format("{:.{}f} M", a / 1e6, a < 1e7 ? 2 : 0); };
+    for (std::size_t t = 0; t < timings.arithmetic.size(); ++t)
+        text += fmt::format("| the limits, {} thread{} | | | {} ({}) | {:.1f} GB/s ({:.1f}) | | |\n", t + 1,
+                            t > 0 ? "s" : "", millions(timings.arithmetic[t].best), millions(timings.arithmetic[t].median),
+                            timings.copying[t].best / 1e9, timings.copying[t].median / 1e9);
+    for (std::size_t c = 0; c < timings.cases.size(); ++c) {
+        const Case& of = timings.cases[c];
+        const Rate rate = timings.rates[c];
+        const std::size_t threads = std::min(std::size_t(of.threads), timings.arithmetic.size()) - 1;
+        text += fmt::format("| {} | {} | {} |", of.name, millions(rate.best), millions(rate.median));
+        text += of.links > 0 ? fmt::format(" {} |", millions(of.links * rate.best)) : " |";
+        text += of.bytes > 0 ? fmt::format(" {:.0f} |", of.bytes) : " |";
+        text += of.links > 0 ? fmt::format(" {:.2f} ({:.2f}) |", of.links * rate.best / timings.arithmetic[threads].best,
+                                           of.links * rate.median / timings.arithmetic[threads].median)
+                             : " |";
+        text += of.bytes > 0 ? fmt::format(" {:.2f} ({:.2f}) |\n", of.bytes * rate.best / timings.copying[threads].best,
+                                           of.bytes * rate.median / timings.copying[threads].median)
+                             : " |\n";
+    }
+    return text;
+}
+
+const std::vector<Benchmark>& benchmarks() {
+    static const std::vector<Benchmark> all = {
+        {"lattice", "steps of lattices, against the machine's limits and Bullet", "node-steps", lattice_cases},
+        {"cloth", "steps of cloths", "node-steps", cloth_cases},
+        {"embed", "a surface of 160,000 vertices carried by its nodes", "vertices", embed_cases}};
+    return all;
+}
+
+}  // namespace palpate::speed

@@ -1,0 +1,67 @@
+#pragma once
+#include "palpate/body/body.h"
+#include "palpate/body/simulation.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+// How fast Palpate is: against what this machine can do at best, and against others. `palpate bench` prints it.
+
+namespace palpate::speed {
+
+/// What one run of something did.
+struct Work {
+    double seconds = 0;
+    double amount = 0;  // in units of its own: node-steps, vertices, links, bytes
+};
+
+/// Something to time.
+struct Case {
+    std::string name;
+    std::function<Work()> run;  // some of it, for a twentieth of a second or so
+    double links = 0;           // evaluated for a unit
+    double bytes = 0;           // that have to be read or written for a unit
+    int threads = 1;
+};
+
+/// Units a second.
+struct Rate {
+    double best = 0, median = 0;
+};
+
+/// What became of cases, and beside them of the machine's own limits: all ran by turns, so that each met the same noise.
+struct Timings {
+    std::vector<Case> cases;
+    std::vector<Rate> rates;                 // of the cases
+    std::vector<Rate> arithmetic, copying;   // links and bytes a second on 1, 2, ... threads
+};
+Timings time(std::vector<Case> cases, int rounds);
+
+/// The limits: springs that never leave the registers (for each a reciprocal root and 13 operations), and a copy that is
+/// too large for the caches.
+Work arithmetic(int threads);
+Work copying(int threads);
+
+/// Steps of a body, of 10 µs each.
+Case stepping(std::string name, const Body& body, const Simulation& how);
+
+/// Bullet's soft body of the same nodes and springs: a pass over its links, or a whole step. No case where Palpate was
+/// built without it.
+std::vector<Case> bullet(const Body& body);
+
+/// A table, in Markdown.
+std::string markdown(const Timings& timings, const std::string& unit);
+
+/// A benchmark, which `palpate bench` knows by its name.
+struct Benchmark {
+    std::string name, about, unit;
+    std::vector<Case> (*cases)();
+};
+const std::vector<Benchmark>& benchmarks();
+
+std::vector<Case> lattice_cases();
+std::vector<Case> cloth_cases();
+std::vector<Case> embed_cases();
+
+}  // namespace palpate::speed
