@@ -10,7 +10,7 @@ set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 
 palpate_needs(PkgConfig)
 
-# solver
+# body, solver
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET GLOBAL libhwy)
 
 # mesh

@@ -26,6 +26,7 @@ struct Pack {
     FN friend Mask operator<=(Pack a, Pack b) { return hn::Le(a.v, b.v); }
     FN friend Pack max(Pack a, Pack b) { return hn::Max(a.v, b.v); }
     FN friend Pack min(Pack a, Pack b) { return hn::Min(a.v, b.v); }
+    FN friend Pack abs(Pack a) { return hn::Abs(a.v); }
     FN friend Pack select(Mask m, Pack a, Pack b) { return hn::IfThenElse(m, a.v, b.v); }
 };
 
@@ -63,6 +64,7 @@ struct Pack3 {
     FN friend Pack3 operator*(Pack s, Pack3 a) { return {s * a.x, s * a.y, s * a.z}; }
     FN Pack3& operator+=(Pack3 b) { return *this = *this + b; }
     FN Pack3& operator-=(Pack3 b) { return *this = *this - b; }
+    FN friend Pack x_of(Pack3 a) { return a.x; }
     FN friend Pack dot(Pack3 a, Pack3 b) { return a.x * b.x + (a.y * b.y + a.z * b.z); }
     FN friend Pack3 cross(Pack3 a, Pack3 b) {
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -79,4 +81,45 @@ FN void store(Pack3 a, float* x, float* y, float* z, std::ptrdiff_t i) {
     store(a.x, x + i);
     store(a.y, y + i);
     store(a.z, z + i);
+}
+
+// The first three of the four floats at each lane's own place, which at(lane) says, turned into three packs.
+template <class At>
+FN Pack3 load_each(At at) {
+#if HWY_TARGET == HWY_SCALAR
+    const float* p = at(std::size_t(0));
+    return {p[0], p[1], p[2]};
+#else
+    const Lanes d;
+    const hn::FixedTag<float, 4> four;
+    auto every_fourth = [&](std::size_t from) HWY_ATTR {
+#if HWY_TARGET == HWY_AVX3
+        const hn::FixedTag<float, 8> eight;
+        return hn::Combine(d, hn::Combine(eight, hn::LoadU(four, at(from + 12)), hn::LoadU(four, at(from + 8))),
+                           hn::Combine(eight, hn::LoadU(four, at(from + 4)), hn::LoadU(four, at(from))));
+#elif HWY_TARGET == HWY_AVX2
+        return hn::Combine(d, hn::LoadU(four, at(from + 4)), hn::LoadU(four, at(from)));
+#else
+        return hn::LoadU(d, at(from));
+#endif
+    };
+    const auto a = every_fourth(0), b = every_fourth(1), c = every_fourth(2), e = every_fourth(3);
+    const hn::RepartitionToWide<Lanes> pairs;
+    const auto xy_of_ab = hn::BitCast(pairs, hn::InterleaveLower(d, a, b)),
+               xy_of_ce = hn::BitCast(pairs, hn::InterleaveLower(d, c, e)),
+               z_of_ab = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b)),
+               z_of_ce = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
+    return {hn::BitCast(d, hn::InterleaveLower(pairs, xy_of_ab, xy_of_ce)),
+            hn::BitCast(d, hn::InterleaveUpper(pairs, xy_of_ab, xy_of_ce)),
+            hn::BitCast(d, hn::InterleaveLower(pairs, z_of_ab, z_of_ce))};
+#endif
+}
+
+// One vector after the other, x, y, z.
+FN void store_interleaved(Pack3 a, float* to) {
+#if HWY_TARGET == HWY_SCALAR
+    store(a, to, to + 1, to + 2, 0);
+#else
+    hn::StoreInterleaved3(a.x.v, a.y.v, a.z.v, Lanes(), to);
+#endif
 }

@@ -14,7 +14,6 @@ using glm::ivec2;
 using glm::ivec3;
 using glm::ivec4;
 using glm::mat3;
-using glm::mat3x4;
 using glm::mat4;
 using glm::uvec2;
 using glm::uvec3;

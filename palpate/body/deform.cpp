@@ -1,168 +1,169 @@
-// Carries surfaces along: mapping.inl with a vector in one register.
+// Carries surfaces along: mapping.inl for as many vertices at once as a register holds floats, compiled once for each
+// instruction set.
 #include "palpate/base/team.h"
-#include "palpate/body/embedding.h"
+#include "palpate/body/embedding_parts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
+#define HWY_DISABLED_TARGETS \
+    (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "palpate/body/deform.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef PALPATE_BODY_DEFORM
+#define PALPATE_BODY_DEFORM
 namespace palpate {
-namespace {
-
-#define FN [[gnu::always_inline]] inline
-
-// Four floats in a register, which every machine has; what is in the fourth place means nothing.
-struct Vector {
-    using Four [[gnu::vector_size(16)]] = float;
-    Four v;
-
-    Vector() = default;
-    FN Vector(Four four) : v(four) {}
-    FN Vector(float x, float y, float z) : v{x, y, z, 0} {}
-    FN explicit Vector(vec3 a) : Vector(a.x, a.y, a.z) {}
-
-    FN friend Vector operator+(Vector a, Vector b) { return a.v + b.v; }
-    FN friend Vector operator-(Vector a, Vector b) { return a.v - b.v; }
-    FN friend Vector operator*(float s, Vector a) { return s * a.v; }
-    FN friend float x_of(Vector a) { return a.v[0]; }
-    FN friend float dot(Vector a, Vector b) {
-        const Four products = a.v * b.v;
-        return products[0] + (products[1] + products[2]);
-    }
-    FN friend Vector cross(Vector a, Vector b) { return next(a.v * next(b.v) - next(a.v) * b.v); }
-
- private:
-    FN static Four next(Four a) { return __builtin_shufflevector(a, a, 1, 2, 0, 3); }  // y, z, x
-};
-
-struct Text {
-    using Real = float;
-    using Real3 = Vector;
-    FN static Vector select(bool c, Vector a, Vector b) { return c ? a : b; }
-    FN static float abs(float a) { return std::abs(a); }
-    FN static float min(float a, float b) { return b < a ? b : a; }
-    FN static float inversesqrt(float a) { return 1 / std::sqrt(a); }
-#undef FN
-#define FN [[gnu::always_inline]] static inline
-#include "palpate/body/mapping.inl"
-#undef FN
-#define FN [[gnu::always_inline]] inline
-};
-
-FN Vector load(const vec4& from) {
-    Vector::Four four;
-    std::memcpy(&four, &from, sizeof four);
-    return four;
-}
-
-FN void store(Vector a, vec4& to) { std::memcpy(&to, &a.v, sizeof to); }
-
-// Writes three floats; where more of the same follows, which will overwrite it, a fourth.
-FN void store(Vector a, vec3& to, bool more) {
-    std::memcpy(&to, &a.v, more ? sizeof a.v : sizeof to);
-}
 
 // What there is to do.
-struct Work {
+struct Carrying {
     const Embedding& embedding;
-    const vec4 *positions, *normals;  // of nodes
-    mat3x4* gradients;                // of frames
+    const vec4 *positions, *normals;  // of nodes, with room for a fourth
+    const mat4* frames;               // the gradient at each, and where its node is
     vec3 *to_positions, *to_normals;
     vec4* to_tangents;  // null: not asked for
 };
 
-class Carrier : Text {
+}  // namespace palpate
+#endif
+
+#undef FN
+#define FN HWY_INLINE
+
+HWY_BEFORE_NAMESPACE();
+namespace palpate::HWY_NAMESPACE {
+
+#include "palpate/base/pack-inl.h"
+
+struct Text {
+    using Real = Pack;
+    using Real3 = Pack3;
+#include "palpate/body/mapping.inl"
+};
+
+// Vertices side by side: those from `first` on, or as many as there are before `end` and the last again and again.
+template <class Vertex>
+class Lanewise : Text {
  public:
-    explicit Carrier(const Work& work) : work_(work) {}
+    FN Lanewise(const Carrying& work, const std::vector<Vertex>& vertices, std::size_t first, std::size_t end)
+        : work_(work), vertices_(vertices.data()), first_(first), end_(end) {}
 
-    // Each from one vertex, or frame, to before another.
-
-    void carry(const std::vector<InCell>& vertices, std::size_t first, std::size_t end) const {
-        for (std::size_t i = first; i < end; ++i) {
-            const InCell& vertex = vertices[i];
-            Vector corner[8];
-            for (int k = 0; k < 8; ++k) corner[k] = node(vertex.nodes[std::size_t(k)]);
-            const Followed f = in_cell(corner, vertex.at.x, vertex.at.y, vertex.at.z);
-            put(i, end, f, by_cofactors(f, vertex.normal));
-        }
-    }
-
-    void carry(const std::vector<OnTriangle>& vertices, std::size_t first, std::size_t end) const {
-        for (std::size_t i = first; i < end; ++i) {
-            const OnTriangle& vertex = vertices[i];
-            const auto [a, b, c] = vertex.nodes;
-            const float wa = vertex.weights.x, wb = vertex.weights.y, wc = vertex.weights.z;
-            Vector approximate(0, 0, 0);
-            if (vertex.curvature > 0)
-                approximate = wa * clear_direction(load(work_.normals[a])) +
-                              (wb * clear_direction(load(work_.normals[b])) + wc * clear_direction(load(work_.normals[c])));
-            Followed f = on_triangle(node(a), node(b), node(c), approximate, vertex.curvature);
-            const Vector foot = wa * node(a) + (wb * node(b) + wc * node(c));
-            f.position = foot + expand(f, vertex.offset.x, vertex.offset.y, vertex.offset.z);
-            put(i, end, f, direction(expand(f, vertex.normal.x, vertex.normal.y, vertex.normal.z), f.y));
-        }
-    }
-
-    void carry(const Framed& framed, std::size_t first, std::size_t end) const {
-        for (std::size_t i = first; i < end; ++i) {
-            const OnFrames& vertex = framed.vertices[i];
-            Followed f;
-            f.position = f.x = f.y = f.z = Vector(0, 0, 0);
-            for (int k = 0; k < 3; ++k) {
-                const int frame = vertex.frames[std::size_t(k)];
-                const float w = vertex.weights[k];
-                const vec3 arm = vertex.arms[std::size_t(k)];
-                const mat3x4& gradient = work_.gradients[frame];
-                const Vector x = load(gradient[0]), y = load(gradient[1]), z = load(gradient[2]);
-                const Vector at = node(framed.frames[std::size_t(frame)].node);
-                f.position = f.position + w * (at + (arm.x * x + (arm.y * y + arm.z * z)));
-                f.x = f.x + w * x, f.y = f.y + w * y, f.z = f.z + w * z;
-            }
-            put(i, end, f, by_cofactors(f, vertex.normal));
-        }
-    }
-
-    // The gradient of the deformation at each frame.
-    void find_gradients(const Framed& framed, std::size_t first, std::size_t end) const {
-        for (std::size_t i = first; i < end; ++i) {
-            const Frame& frame = framed.frames[i];
-            const int spokes = i > 0 ? framed.frames[i - 1].spokes_end : 0, faces = i > 0 ? framed.frames[i - 1].faces_end : 0;
-            Vector x(frame.rest[0]), y(frame.rest[1]), z(frame.rest[2]);
-            auto add = [&](Vector along, vec3 pull) {
-                x = x + pull.x * along, y = y + pull.y * along, z = z + pull.z * along;
-            };
-            for (int s = spokes; s < frame.spokes_end; ++s)
-                add(node(framed.spokes[std::size_t(s)].to) - node(frame.node), framed.spokes[std::size_t(s)].pull);
-            if (faces < frame.faces_end) {
-                Vector sum(0, 0, 0);  // of the faces' normals, each by its area
-                for (int f = faces; f < frame.faces_end; ++f) {
-                    const auto [a, b, c] = framed.faces[std::size_t(f)];
-                    sum = sum + cross(node(b) - node(a), node(c) - node(a));
-                }
-                add(direction(sum, Vector(0, 0, 0)), frame.normal_pull);
-            }
-            mat3x4& to = work_.gradients[i];
-            store(x, to[0]), store(y, to[1]), store(z, to[2]);
-        }
+    FN void carry() {
+        if constexpr (std::is_same_v<Vertex, InCell>) carry_in_cells();
+        if constexpr (std::is_same_v<Vertex, OnTriangle>) carry_on_triangles();
+        if constexpr (std::is_same_v<Vertex, OnFrames>) carry_on_frames();
     }
 
  private:
-    FN Vector node(int i) const { return load(work_.positions[i]); }
-    FN static Vector by_cofactors(const Followed& f, vec3 n) {
-        return normal_by_cofactors(f, n.x, n.y, n.z, Vector(n));
+    FN std::size_t number(std::size_t lane) const { return std::min(first_ + lane, end_ - 1); }
+    FN const Vertex& vertex(std::size_t lane) const { return vertices_[number(lane)]; }
+
+    FN Pack3 each(vec3 Vertex::* member) const {
+        return load_each([&](std::size_t lane) HWY_ATTR { return &(vertex(lane).*member).x; });
     }
-    FN void put(std::size_t i, std::size_t end, const Followed& f, Vector normal) const {
-        const bool more = i + 1 < end;
-        store(f.position, work_.to_positions[i], more);
-        store(normal, work_.to_normals[i], more);
-        if (!work_.to_tangents) return;
-        const vec4 t = work_.embedding.tangents[i];
-        store(upright(expand(f, t.x, t.y, t.z), normal), work_.to_tangents[i]);
-        work_.to_tangents[i].w = t.w;
+    template <class Index>
+    FN Pack3 each(const vec4* from, Index index) const {
+        return load_each([&](std::size_t lane) HWY_ATTR { return &from[index(vertex(lane))].x; });
     }
 
-    const Work& work_;
+    FN void carry_in_cells() {
+        Pack3 corner[8];
+        for (std::size_t k = 0; k < 8; ++k)
+            corner[k] = each(work_.positions, [k](const InCell& v) HWY_ATTR { return v.nodes[k]; });
+        const Pack3 at = each(&InCell::at), n = each(&InCell::normal);
+        const Followed f = in_cell(corner, at.x, at.y, at.z);
+        put(f, normal_by_cofactors(f, n.x, n.y, n.z, n));
+    }
+
+    FN void carry_on_triangles() {
+        Pack3 node[3], approximate(0.0f, 0.0f, 0.0f);
+        const Pack3 weights = each(&OnTriangle::weights);
+        const Pack w[3] = {weights.x, weights.y, weights.z};
+        HWY_ALIGN float curvatures[HWY_LANES(float)];
+        bool flat = true;
+        for (std::size_t lane = 0; lane < lanes(); ++lane) {
+            curvatures[lane] = vertex(lane).curvature;
+            flat = flat && !(curvatures[lane] > 0);
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            auto index = [k](const OnTriangle& v) HWY_ATTR { return v.nodes[k]; };
+            node[k] = each(work_.positions, index);
+            if (!flat) approximate += w[k] * clear_direction(each(work_.normals, index));
+        }
+        Followed f = on_triangle(node[0], node[1], node[2], approximate, ::palpate::HWY_NAMESPACE::load(curvatures));
+        const Pack3 offset = each(&OnTriangle::offset), n = each(&OnTriangle::normal);
+        f.position = w[0] * node[0] + (w[1] * node[1] + w[2] * node[2]) + expand(f, offset.x, offset.y, offset.z);
+        put(f, direction(expand(f, n.x, n.y, n.z), f.y));
+    }
+
+    FN void carry_on_frames() {
+        const Pack3 weights = each(&OnFrames::weights), n = each(&OnFrames::normal);
+        const Pack w[3] = {weights.x, weights.y, weights.z};
+        Followed f;
+        f.position = f.x = f.y = f.z = Pack3(0.0f, 0.0f, 0.0f);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Pack3 arm = load_each([&](std::size_t lane) HWY_ATTR { return &vertex(lane).arms[k].x; });
+            auto column = [&](int c) HWY_ATTR {
+                return load_each([&](std::size_t lane) HWY_ATTR { return &work_.frames[vertex(lane).frames[k]][c].x; });
+            };
+            const Pack3 x = column(0), y = column(1), z = column(2);
+            f.position += w[k] * (column(3) + (arm.x * x + (arm.y * y + arm.z * z)));
+            f.x += w[k] * x;
+            f.y += w[k] * y;
+            f.z += w[k] * z;
+        }
+        put(f, normal_by_cofactors(f, n.x, n.y, n.z, n));
+    }
+
+    FN void put(const Followed& f, Pack3 normal) {
+        write(f.position, work_.to_positions);
+        write(normal, work_.to_normals);
+        if (!work_.to_tangents) return;
+        const vec4* rest = work_.embedding.tangents.data();
+        const Pack3 t = load_each([&](std::size_t lane) HWY_ATTR { return &rest[number(lane)].x; });
+        const Pack3 tangent = upright(expand(f, t.x, t.y, t.z), normal);
+        HWY_ALIGN float x[HWY_LANES(float)], y[HWY_LANES(float)], z[HWY_LANES(float)];
+        ::palpate::HWY_NAMESPACE::store(tangent, x, y, z, 0);
+        for (std::size_t lane = 0; first_ + lane < end_ && lane < lanes(); ++lane)
+            work_.to_tangents[first_ + lane] = vec4(x[lane], y[lane], z[lane], rest[first_ + lane].w);
+    }
+    FN void write(Pack3 a, vec3* to) {
+        if (first_ + lanes() <= end_) return store_interleaved(a, &to[first_].x);
+        HWY_ALIGN float some[3 * HWY_LANES(float)];
+        store_interleaved(a, some);
+        std::memcpy(&to[first_], some, (end_ - first_) * sizeof(vec3));
+    }
+
+    const Carrying& work_;
+    const Vertex* vertices_;
+    std::size_t first_, end_;
 };
+
+template <class Vertex>
+void carry_all(const Carrying& work, const std::vector<Vertex>& vertices, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; i += lanes()) Lanewise<Vertex>(work, vertices, i, end).carry();
+}
+
+// The vertices from one to before another.
+void carry(const Carrying& work, std::size_t first, std::size_t end) {
+    if (const auto* framed = std::get_if<Framed>(&work.embedding.vertices))
+        carry_all(work, framed->vertices, first, end);
+    if (const auto* in_cells = std::get_if<std::vector<InCell>>(&work.embedding.vertices))
+        carry_all(work, *in_cells, first, end);
+    if (const auto* on = std::get_if<std::vector<OnTriangle>>(&work.embedding.vertices))
+        carry_all(work, *on, first, end);
+}
+
+}  // namespace palpate::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate {
+namespace {
+
+HWY_EXPORT(carry);
 
 std::size_t count(const Embedding& embedding) {
     if (const auto* framed = std::get_if<Framed>(&embedding.vertices)) return framed->vertices.size();
@@ -170,11 +171,44 @@ std::size_t count(const Embedding& embedding) {
     return std::get<std::vector<OnTriangle>>(embedding.vertices).size();
 }
 
-std::vector<vec4> padded(std::span<const vec3> vectors) {
-    std::vector<vec4> with_room;
-    with_room.reserve(vectors.size());
-    for (vec3 v : vectors) with_room.emplace_back(v, 0.0f);
-    return with_room;
+std::vector<vec4> with_room(std::span<const vec3> vectors) {
+    std::vector<vec4> list;
+    list.reserve(vectors.size());
+    for (vec3 v : vectors) list.emplace_back(v, 0.0f);
+    return list;
+}
+
+// A vector in one register: the compiler makes no more of three floats.
+using Four [[gnu::vector_size(16)]] = float;
+Four four(const vec4& v) { return Four{v.x, v.y, v.z, v.w}; }
+Four four(vec3 v) { return Four{v.x, v.y, v.z, 0}; }
+vec4 back(Four v) { return {v[0], v[1], v[2], v[3]}; }
+
+// The gradient of the deformation at frames from one to before another, and where their nodes are.
+void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size_t first, std::size_t end,
+                 std::vector<mat4>& to) {
+    for (std::size_t i = first; i < end; ++i) {
+        const Frame& frame = framed.frames[i];
+        const int spokes = i > 0 ? framed.frames[i - 1].spokes_end : 0,
+                  faces = i > 0 ? framed.frames[i - 1].faces_end : 0;
+        const vec4 here = nodes[std::size_t(frame.node)];
+        Four x = four(frame.rest[0]), y = four(frame.rest[1]), z = four(frame.rest[2]);
+        auto add = [&](Four along, vec3 pull) { x += pull.x * along, y += pull.y * along, z += pull.z * along; };
+        for (int s = spokes; s < frame.spokes_end; ++s) {
+            const Spoke& spoke = framed.spokes[std::size_t(s)];
+            add(four(nodes[std::size_t(spoke.to)]) - four(here), spoke.pull);
+        }
+        if (faces < frame.faces_end) {
+            vec3 sum(0);  // of the faces' normals, each by its area
+            for (int f = faces; f < frame.faces_end; ++f) {
+                const auto [a, b, c] = framed.faces[std::size_t(f)];
+                const vec3 corner(nodes[std::size_t(a)]);
+                sum += glm::cross(vec3(nodes[std::size_t(b)]) - corner, vec3(nodes[std::size_t(c)]) - corner);
+            }
+            add(four(direction(sum, vec3(0))), frame.normal_pull);
+        }
+        to[i] = mat4(back(x), back(y), back(z), here);
+    }
 }
 
 }  // namespace
@@ -186,21 +220,22 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
     normals.resize(vertices);
     if (tangents) tangents->resize(embedding.tangents.size());
     const auto* framed = std::get_if<Framed>(&embedding.vertices);
-    const std::vector<vec4> at = padded(nodes.positions), facing = padded(nodes.normals);
-    std::vector<mat3x4> gradients(framed ? framed->frames.size() : 0);
+    const bool on_triangles = std::holds_alternative<std::vector<OnTriangle>>(embedding.vertices);
+    const std::vector<vec4> at = with_room(nodes.positions),
+                            facing = with_room(on_triangles ? nodes.normals : std::span<const vec3>());
+    std::vector<mat4> frames(framed ? framed->frames.size() : 0);
     const bool with_tangents = tangents && !tangents->empty();
-    const Work work{embedding,      at.data(),      facing.data(), gradients.data(),
-                    positions.data(), normals.data(), with_tangents ? tangents->data() : nullptr};
-    const Carrier carrier(work);
-    auto part = [&](std::size_t all, int member) { return all * std::size_t(member) / std::size_t(team ? team->members() : 1); };
+    const Carrying work{embedding,        at.data(),      facing.data(), frames.data(),
+                        positions.data(), normals.data(), with_tangents ? tangents->data() : nullptr};
+    const std::size_t members = std::size_t(team ? team->members() : 1);
     auto share = [&](int member) {
+        auto part = [&](std::size_t all) { return all * std::size_t(member) / members; };
+        auto next = [&](std::size_t all) { return all * (std::size_t(member) + 1) / members; };
         if (framed) {
-            const std::size_t frames = framed->frames.size();
-            carrier.find_gradients(*framed, part(frames, member), part(frames, member + 1));
+            find_frames(*framed, at, part(frames.size()), next(frames.size()), frames);
             if (team) team->meet();
         }
-        std::visit([&](const auto& v) { carrier.carry(v, part(vertices, member), part(vertices, member + 1)); },
-                   embedding.vertices);
+        HWY_DYNAMIC_DISPATCH(carry)(work, part(vertices), next(vertices));
     };
     if (team)
         team->run(share);
@@ -209,3 +244,4 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
 }
 
 }  // namespace palpate
+#endif

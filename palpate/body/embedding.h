@@ -37,18 +37,18 @@ inline std::span<const Named<Mapping>> names(Mapping) {
 
 /// A vertex in a cell of the lattice.
 struct InCell {
-    std::array<int, 8> nodes;  // the cell's corners
     vec3 at;                   // where in the cell, 0 to 1 along each axis; a vertex outside goes beyond
     vec3 normal;               // of the surface at rest, unit
+    std::array<int, 8> nodes;  // the cell's corners
 };
 
 /// A vertex on a triangle of nodes.
 struct OnTriangle {
-    std::array<int, 3> nodes;
     vec3 weights;     // of the nodes: their sum, 1 in all, is the reference point (eq. 4)
     vec3 offset;      // from there to the vertex, in the basis, m (eq. 7)
     vec3 normal;      // of the surface at rest, in the basis, unit
     float curvature;  // how far the basis turns to the approximate normals: 0 constant, 1 interpolated
+    std::array<int, 3> nodes;
 };
 
 /// What a neighbour says about a node's frame.
@@ -69,10 +69,10 @@ struct Frame {
 /// A vertex on the frames of three nodes: each carries it along, from the node's place by the frame times the
 /// arm, and the weights say how much.
 struct OnFrames {
-    std::array<int, 3> frames;
     vec3 weights;
     std::array<vec3, 3> arms;  // to the vertex, from half way between each node and the place under it, m
     vec3 normal;               // of the surface at rest, unit
+    std::array<int, 3> frames;
 };
 
 /// All vertices on frames, and the frames that they share.

@@ -28,7 +28,7 @@ std::vector<InCell> embed_in_cells(const Mesh& surface, const Body& body) {
             return distance_to_cell(v, corner, body.spacing) +
                    0.25f * distance_to_cell(inside, corner, body.spacing);
         })];
-        vertices.push_back({nodes, (v - body.positions[nodes[0]]) / body.spacing, n});
+        vertices.push_back({(v - body.positions[nodes[0]]) / body.spacing, n, nodes});
     }
     return vertices;
 }

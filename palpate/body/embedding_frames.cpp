@@ -98,7 +98,7 @@ Framed embed_on_frames(const Mesh& surface, const Body& body) {
     for (std::size_t i = 0; i < surface.positions.size(); ++i) {
         const vec3 v = surface.positions[i];
         const Facet& facet = outside.nearest(v, surface.normals[i]);
-        OnFrames vertex{{}, outside.weights(facet, v), {}, surface.normals[i]};
+        OnFrames vertex{outside.weights(facet, v), {}, surface.normals[i], {}};
         // The arms begin half way from a node to the place under the vertex, not at the node: then the
         // frames together follow a curved sheet to the second order. (Whole ways bulge by as much as the flat
         // triangle sinks.) For affine motions it is the same.

@@ -34,12 +34,12 @@ class Hanger {
         const Facet& facet = outside_.best(v, n, [&](const Facet& f, float) {
             return glm::distance(v, outside_.point(f, nearest_corner(f, v)));
         });
-        return {facet.nodes, nearest_corner(facet, v), vec3(0), vec3(0, 1, 0), 1};
+        return {nearest_corner(facet, v), vec3(0), vec3(0, 1, 0), 1, facet.nodes};
     }
 
     OnTriangle on_triangle(vec3 v, vec3 n, float curvature) const {
         const Facet& facet = outside_.nearest(v, n);
-        OnTriangle vertex{facet.nodes, outside_.weights(facet, v), vec3(0), vec3(0), curvature};
+        OnTriangle vertex{outside_.weights(facet, v), vec3(0), vec3(0), curvature, facet.nodes};
         const Basis b = basis(vertex, rest());
         vertex.offset = express(v - reference(vertex, body_.positions), b);
         vertex.normal = express(n, b);
@@ -55,7 +55,7 @@ class Hanger {
             return glm::distance(v, outside_.point(f, at.weights)) + 4 * at.aside;
         });
         const Foot at = foot(facet, v);
-        OnTriangle vertex{facet.nodes, at.weights, vec3(0, at.height, 0), vec3(0), 1};
+        OnTriangle vertex{at.weights, vec3(0, at.height, 0), vec3(0), 1, facet.nodes};
         vertex.normal = express(n, basis(vertex, rest()));
         return vertex;
     }
@@ -100,7 +100,7 @@ class Hanger {
         for (int round = 0; round < 12 && best.aside > 1e-7f * body_.spacing; ++round) {
             const vec3 lifted[] = {at[0] + t * up[0], at[1] + t * up[1], at[2] + t * up[2]};
             const vec3 weights = nearest_weights(v, lifted[0], lifted[1], lifted[2]);
-            const OnTriangle stand{facet.nodes, weights, vec3(0), vec3(0), 1};
+            const OnTriangle stand{weights, vec3(0), vec3(0), 1, facet.nodes};
             const vec3 normal = basis(stand, rest()).y, over = v - reference(stand, body_.positions);
             const float height = glm::dot(over, normal), aside = glm::length(over - height * normal);
             if (aside < best.aside) best = {weights, height, aside};

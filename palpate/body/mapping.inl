@@ -56,7 +56,9 @@ FN Followed in_cell(Real3 corner[8], Real x, Real y, Real z) {
 }
 
 // An approximate normal made unit; shorter where the neighbours' unit vectors cancel and leave it to chance.
-FN Real3 clear_direction(Real3 normal) { return min(inversesqrt(dot(normal, normal)), Real(2.0f)) * normal; }
+FN Real3 clear_direction(Real3 normal) {
+    return min(inversesqrt(dot(normal, normal) + Real(1e-30f)), Real(2.0f)) * normal;
+}
 
 // The basis on a triangle of nodes (2005, eq. 6 and 8) with every vector normalised: the paper's N, B and Nc are not of
 // unit length unless the triangle has a right angle. Eq. 8's order, Bc = Nc x T and Tc = Bc x Nc, is kept. `approximate`:
