@@ -68,16 +68,15 @@ Case stepping(std::string name, const Body& body, const Simulation& how) {
     const double begin = now();
     solver->step(4 * simulation.step);
     const int steps = std::clamp(int(0.05 / ((now() - begin) / 4)), 2, 100);
-    double springs = 0;
-    for (const Tie& tie : table(body).ties) springs += tie.share > 0;
+    double forces = 0;  // a step
+    for (const Stage& stage : scheme(simulation.integrator).stages) forces += stage.kick > 0;
     return {std::move(name),
             [=] {
                 const double start = now();
                 const Stats stats = solver->step(steps * simulation.step);
                 return Work{now() - start, nodes * stats.steps};
             },
-            springs / nodes * double(scheme(simulation.integrator).stages.size() -
-                                     (simulation.integrator == Integrator::verlet_midpoint)),
+            table(body).width * forces,
             bytes_of_a_step(simulation.integrator), simulation.threads};
 }
 

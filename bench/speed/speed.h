@@ -20,7 +20,7 @@ struct Work {
 struct Case {
     std::string name;
     std::function<Work()> run;  // some of it, for a twentieth of a second or so
-    double links = 0;           // evaluated for a unit
+    double links = 0;           // evaluated for a unit, those that a node lacks included: they cost as much
     double bytes = 0;           // that have to be read or written for a unit
     int threads = 1;
 };

@@ -280,7 +280,9 @@ void pass(const Sweep& s, int first_run, int end_run, Largest& largest) {
             const auto before = load_node<At>(s.body, s.turn.opens ? at : total, i);
             store_node(eyes.collect(before, node, change), total, i);
         }
-        auto moved = eyes.integrate(load_node<At>(s.body, start, i), node, change);
+        auto from = node;
+        if (s.turn.start != s.turn.at) from = load_node<At>(s.body, start, i);
+        auto moved = eyes.integrate(from, node, change);
         if (eyes.pass.obstacles > 0) moved = eyes.collide(moved, load(begin.x, begin.y, begin.z, i));
         if (s.turn.ends) {
             const Pack3 was = load(begin.x, begin.y, begin.z, i);
