@@ -127,20 +127,16 @@ class Cpu final : public Solver {
         return made;
     }
 
-    // The runs of each member of the team: those from parts_[member] on, with about as many slots.
+    // The blocks of each member of the team: those from parts_[member] on.
     void share_out() {
-        const std::vector<Run>& runs = laid_.layout().runs;
-        std::size_t run = 0;
-        for (int member = 0; member < team_.members(); ++member) {
-            const long end = long(laid_.layout().slots) * member / team_.members();
-            while (run < runs.size() && runs[run].first < end) ++run;
-            parts_.push_back(int(run));
-        }
-        parts_.push_back(int(runs.size()));
+        const std::size_t blocks = laid_.layout().blocks.size();
+        for (int member = 0; member <= team_.members(); ++member)
+            parts_.push_back(int(blocks * std::size_t(member) / std::size_t(team_.members())));
+        for (std::vector<Bounds>& bounds : moved_) bounds.resize(blocks);
     }
-    int slot_of_run(int run) const {
-        return run < int(laid_.layout().runs.size()) ? laid_.layout().runs[std::size_t(run)].first
-                                                     : laid_.layout().slots;
+    int all_blocks() const { return int(laid_.layout().blocks.size()); }
+    int slot_of_block(int block) const {
+        return block < all_blocks() ? laid_.layout().blocks[std::size_t(block)].first_slot : laid_.layout().slots;
     }
     static void copy(const float* from, float* to, int first, int end) {
         std::memcpy(to + first, from + first, std::size_t(end - first) * sizeof(float));
@@ -154,7 +150,7 @@ class Cpu final : public Solver {
         for (std::size_t d = 0; d < call.influences.drags.size(); ++d)
             dragged[d] = laid_.layout().slot[std::size_t(call.influences.drags[d].node)];
         const bool touched = !call.influences.presses.empty() || !call.influences.drags.empty();
-        if (touched) given_.assign(laid_.layout().runs.size(), {});
+        if (touched) given_.assign(laid_.layout().blocks.size(), {});
         std::vector<Largest> largest(std::size_t(team_.members()));
         std::atomic<bool> torn = false;
 
@@ -163,16 +159,22 @@ class Cpu final : public Solver {
             Fields states[4];
             std::copy(std::begin(states_), std::end(states_), states);
             for_each_field([&](float* Fields::* f) {
-                copy(states[current].*f, before_.*f, slot_of_run(first), slot_of_run(end));
+                copy(states[current].*f, before_.*f, slot_of_block(first), slot_of_block(end));
             });
+            std::array<Bounds*, 4> moved;
+            for (std::size_t where = 0; where < 4; ++where) moved[where] = moved_[where].data();
+            if (touched) kernels_.find_bounds({laid_.view(), constant, at_now, states, moved, dragged}, first, end);
             call.for_each_pass(constant, [&](const Pass& pass, const Turn& turn) {
-                const Sweep sweep{laid_.view(), pass, turn, states, dragged};
+                const Sweep sweep{laid_.view(), pass, turn, states, moved, dragged};
                 if (touched && turn.impulse > 0) kernels_.give(sweep, first, end, given_.data());
                 kernels_.pass(sweep, first, end, largest[std::size_t(member)]);
                 team_.meet();
-                if (pass.last && turn.next != current) std::swap(states[current], states[turn.next]);
+                if (pass.last && turn.next != current) {
+                    std::swap(states[current], states[turn.next]);
+                    std::swap(moved[current], moved[turn.next]);
+                }
             });
-            const Sweep last{laid_.view(), quiet_, at_now, states, dragged};
+            const Sweep last{laid_.view(), quiet_, at_now, states, moved, dragged};
             if (kernels_.torn(last, first, end)) torn = true;
         });
         for (const Largest& of_member : largest) {
@@ -183,7 +185,7 @@ class Cpu final : public Solver {
         return torn;
     }
 
-    // Run after run, so that the sums do not depend on who did which.
+    // Block after block, so that the sums do not depend on who did which.
     void add_up(Stats& stats) const {
         for (const Given& given : given_) {
             for (std::size_t t = 0; t < stats.reactions.size(); ++t) stats.reactions[t] -= given.by_tip[t];
@@ -203,9 +205,8 @@ class Cpu final : public Solver {
             brought_up.*f = arrays.back().data();
         });
         const Fields states[] = {states_[current], brought_up, {}, {}};
-        const Sweep sweep{laid_.view(), pass, at_now, states, {}};
         Largest none;
-        kernels_.pass(sweep, 0, int(laid_.layout().runs.size()), none);
+        kernels_.pass({laid_.view(), pass, at_now, states, {}, {}}, 0, all_blocks(), none);
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const int s = laid_.layout().slot[i];
             set(i, dvec3(brought_up.vx[s], brought_up.vy[s], brought_up.vz[s]));
@@ -250,8 +251,7 @@ class Cpu final : public Solver {
 
     void publish() const {
         const Fields &at = states_[current], &free = states_[between];  // between calls nobody needs it
-        const Sweep sweep{laid_.view(), quiet_, at_now, states_, {}};
-        kernels_.normals(sweep, 0, int(laid_.layout().runs.size()), free.x, free.y, free.z);
+        kernels_.normals({laid_.view(), quiet_, at_now, states_, {}, {}}, 0, all_blocks(), free.x, free.y, free.z);
         positions_.resize(body_.count());
         normals_.resize(body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {
@@ -277,7 +277,8 @@ class Cpu final : public Solver {
     Fields before_ = {};                // as it was before the call
     double lag_ = 0;                    // s, how far the velocities are behind the positions
     std::vector<int> pinned_;           // nodes of infinite mass
-    std::vector<int> parts_;
+    std::vector<int> parts_;            // of the blocks, by members
+    std::vector<Bounds> moved_[4];      // of each state and block
     std::vector<Given> given_;
     mutable std::vector<vec3> positions_, normals_;  // what nodes() shows
     mutable bool published_ = false;

@@ -28,9 +28,8 @@ struct QuietPass : Pass {
     static constexpr vec4 wind = vec4(0);
     explicit QuietPass(const Pass& pass) : Pass(pass) {}
 
-    static bool fits(const Pass& p) {
-        return p.link_damping == 0 && p.tips == 0 && p.drags == 0 && p.obstacles == 0 && p.wind.w == 0;
-    }
+    // But for tools and obstacles that are far.
+    static bool calm(const Pass& p) { return p.link_damping == 0 && p.wind.w == 0; }
 };
 
 // What the physics asks of a node whatever its springs.
@@ -248,32 +247,31 @@ FN void store_node(const Node& node, const Fields& to, std::ptrdiff_t i) {
     store(node.velocity, to.vx, to.vy, to.vz, i);
 }
 
-// The nearest multiple of `finest`, which is a power of two; what is large is one already.
-FN Pack on_a_multiple(Pack a, float finest) {
-    const Pack shift = 12582912.0f * finest;  // 1.5 x 2^23: from here on floats lie `finest` apart
-    return select(Pack(hn::Abs(a.v)) < Pack(4194304.0f * finest), (a + shift) - shift, a);
-}
-
 template <class At, class Do>
-FN void for_each_pack(const Sweep& s, const Fields& at, int first_run, int end_run, Do act) {
-    const typename At::WithPass pass(s.pass);
-    const typename At::Constants constants(pass);
-    for (int r = first_run; r < end_run; ++r) {
+FN void for_each_pack(const Sweep& s, const typename At::WithPass& pass, const typename At::Constants& constants,
+                      const Fields& at, int block, Do act) {
+    for (int r = s.body.blocks[block].first_run; r < s.body.blocks[block].end_run; ++r) {
         const Run run = s.body.runs[r];
         for (std::ptrdiff_t i = run.first; i < run.first + run.count; i += std::ptrdiff_t(lanes())) {
             At eyes(s, pass, constants, at, r, i);
-            act(eyes, r, i);
+            act(eyes, i);
         }
     }
 }
+template <class At, class Do>
+FN void for_each_pack(const Sweep& s, int first_block, int end_block, Do act) {
+    const typename At::WithPass pass(s.pass);
+    const typename At::Constants constants(pass);
+    for (int block = first_block; block < end_block; ++block)
+        for_each_pack<At>(s, pass, constants, s.states[s.turn.at], block, act);
+}
 
+// Forces and the motion that they bring.
 template <class At>
-void pass(const Sweep& s, int first_run, int end_run, Largest& largest) {
-    const Pass& pass = s.pass;
-    const Fields start = s.states[s.turn.start], at = s.states[s.turn.at], next = s.states[s.turn.next];
-    const Fields begin = s.states[current], total = s.states[sum];
-    Pack speed = 0.0f, move = 0.0f;
-    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int, std::ptrdiff_t i) HWY_ATTR {
+FN void move(const Sweep& s, const typename At::WithPass& pass, const typename At::Constants& constants, int block) {
+    const Fields start = s.states[s.turn.start], at = s.states[s.turn.at], next = s.states[s.turn.next],
+                 total = s.states[sum];
+    for_each_pack<At>(s, pass, constants, at, block, [&](At& eyes, std::ptrdiff_t i) HWY_ATTR {
         const auto node = load_node<At>(s.body, at, i);
         const Pack3 change = pass.kick > 0 ? eyes.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
         if (pass.part > 0) {
@@ -282,19 +280,105 @@ void pass(const Sweep& s, int first_run, int end_run, Largest& largest) {
         }
         auto from = node;
         if (s.turn.start != s.turn.at) from = load_node<At>(s.body, start, i);
-        auto moved = eyes.integrate(from, node, change);
-        if (eyes.pass.obstacles > 0) moved = eyes.collide(moved, load(begin.x, begin.y, begin.z, i));
-        if (s.turn.ends) {
-            const Pack3 was = load(begin.x, begin.y, begin.z, i);
-            Pack3& p = moved.position;
-            p = {on_a_multiple(p.x, s.body.finest), on_a_multiple(p.y, s.body.finest), on_a_multiple(p.z, s.body.finest)};
-            speed = max(speed, dot(moved.velocity, moved.velocity));
-            move = max(move, dot(p - was, p - was));
-        }
-        store_node(moved, next, i);
+        store_node(eyes.integrate(from, node, change), next, i);
     });
+}
+
+// Out of the obstacles. `was`: where the step began.
+template <class At>
+FN void push_out(const Sweep& s, const Pass& pass, const typename At::Constants& constants, int block, const Fields& was) {
+    const Fields next = s.states[s.turn.next];
+    for_each_pack<At>(s, pass, constants, next, block, [&](At& eyes, std::ptrdiff_t i) HWY_ATTR {
+        const Pack3 before = load(was.x, was.y, was.z, i);
+        store_node(eyes.collide(load_node<At>(s.body, next, i), before), next, i);
+    });
+}
+
+// The nearest multiple of `finest`, which is a power of two; what is large is one already.
+FN Pack on_a_multiple(Pack a, float finest) {
+    const Pack shift = 12582912.0f * finest;  // 1.5 x 2^23: from here on floats lie `finest` apart
+    return select(abs(a) < Pack(4194304.0f * finest), (a + shift) - shift, a);
+}
+
+// What is done once, at the end of a call.
+FN void finish(const Sweep& s, const Block& block, const Fields& was, Largest& largest) {
+    const Fields next = s.states[s.turn.next];
+    const float finest = s.body.finest;
+    Pack speed = 0.0f, move = 0.0f;
+    for (std::ptrdiff_t i = block.first_slot; i < block.end_slot; i += std::ptrdiff_t(lanes())) {
+        Pack3 p = load(next.x, next.y, next.z, i);
+        const Pack3 v = load(next.vx, next.vy, next.vz, i), way = p - load(was.x, was.y, was.z, i);
+        p = {on_a_multiple(p.x, finest), on_a_multiple(p.y, finest), on_a_multiple(p.z, finest)};
+        store(p, next.x, next.y, next.z, i);
+        speed = max(speed, dot(v, v));
+        move = max(move, dot(way, way));
+    }
     largest.speed = std::max(largest.speed, hn::GetLane(hn::MaxOfLanes(Lanes(), speed.v)));
     largest.move = std::max(largest.move, hn::GetLane(hn::MaxOfLanes(Lanes(), move.v)));
+}
+
+// Where the nodes of a block were when the step began, if the last of several passes is about to write over it.
+class Kept {
+ public:
+    FN Kept(const Sweep& s, const Block& block) : fields(s.states[current]) {
+        if (s.turn.next != current || !(s.turn.ends || s.pass.obstacles > 0)) return;
+        float** fields_of[] = {&fields.x, &fields.y, &fields.z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::copy(*fields_of[k] + block.first_slot, *fields_of[k] + block.end_slot, memory_[k]);
+            *fields_of[k] = memory_[k] - block.first_slot;
+        }
+    }
+    Kept(const Kept&) = delete;
+
+    Fields fields;
+
+ private:
+    HWY_ALIGN float memory_[3][Block::most];
+};
+
+FN Bounds bounds_of(const Fields& at, const Block& block) {
+    Pack3 low(3e38f, 3e38f, 3e38f), high(-3e38f, -3e38f, -3e38f);
+    for (std::ptrdiff_t i = block.first_slot; i < block.end_slot; i += std::ptrdiff_t(lanes())) {
+        const Pack3 p = load(at.x, at.y, at.z, i);
+        low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+        high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+    }
+    const Lanes d;
+    auto least = [&](Pack a) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(d, a.v)); };
+    auto most = [&](Pack a) HWY_ATTR { return hn::GetLane(hn::MaxOfLanes(d, a.v)); };
+    return {{least(low.x), least(low.y), least(low.z)}, {most(high.x), most(high.y), most(high.z)}};
+}
+
+// A pass: block after block, each whole while it is in the first cache. Where nothing is near, nothing is looked for.
+template <class At>
+void pass(const Sweep& s, int first_block, int end_block, Largest& largest) {
+    using Quiet = typename At::Quiet;
+    const typename Quiet::WithPass quiet_pass(s.pass);
+    const typename Quiet::Constants quiet_constants(quiet_pass);
+    const typename At::Constants constants(s.pass);
+    const bool tools = s.pass.tips > 0 || s.pass.drags > 0;
+    for (int b = first_block; b < end_block; ++b) {
+        const Block& block = s.body.blocks[b];
+        const Kept was(s, block);
+        if (!QuietPass::calm(s.pass) || (tools && touched(s, b, s.moved[s.turn.at][b])))
+            move<At>(s, s.pass, constants, b);
+        else
+            move<Quiet>(s, quiet_pass, quiet_constants, b);
+        if (tools || s.pass.obstacles > 0) {
+            Bounds& moved = s.moved[s.turn.next][b];
+            moved = bounds_of(s.states[s.turn.next], block);
+            if (near_obstacles(s, b, moved)) {
+                push_out<At>(s, s.pass, constants, b, was.fields);
+                moved = bounds_of(s.states[s.turn.next], block);
+            }
+        }
+        if (s.turn.ends) finish(s, block, was.fields, largest);
+    }
+}
+
+void find_bounds(const Sweep& s, int first_block, int end_block) {
+    for (int b = first_block; b < end_block; ++b)
+        s.moved[s.turn.at][b] = bounds_of(s.states[s.turn.at], s.body.blocks[b]);
 }
 
 // Adds up what a register holds, one node after the other.
@@ -305,34 +389,38 @@ FN void add(Pack3 force, double seconds, dvec3& sum) {
 }
 
 template <class At>
-void give(const Sweep& s, int first_run, int end_run, Given* of_run) {
+void give(const Sweep& s, int first_block, int end_block, Given* of_block) {
     const Fields at = s.states[s.turn.at];
-    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int r, std::ptrdiff_t i) HWY_ATTR {
-        const Pack3 p = load(at.x, at.y, at.z, i);
-        for (int t = 0; t < s.pass.tips; ++t) {
-            const Pack3 force = eyes.tip_force(p, t);
-            if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_run[r].by_tip[std::size_t(t)]);
-        }
-        for (int d = 0; d < s.pass.drags; ++d) {
-            const Pack3 force = eyes.drag_force(p, d);
-            if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_run[r].by_drag[std::size_t(d)]);
-        }
-    });
+    const typename At::Constants constants(s.pass);
+    for (int b = first_block; b < end_block; ++b) {
+        if (!touched(s, b, s.moved[s.turn.at][b])) continue;
+        for_each_pack<At>(s, s.pass, constants, at, b, [&](At& eyes, std::ptrdiff_t i) HWY_ATTR {
+            const Pack3 p = load(at.x, at.y, at.z, i);
+            for (int t = 0; t < s.pass.tips; ++t) {
+                const Pack3 force = eyes.tip_force(p, t);
+                if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_block[b].by_tip[std::size_t(t)]);
+            }
+            for (int d = 0; d < s.pass.drags; ++d) {
+                const Pack3 force = eyes.drag_force(p, d);
+                if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_block[b].by_drag[std::size_t(d)]);
+            }
+        });
+    }
 }
 
 template <class At>
-void normals(const Sweep& s, int first_run, int end_run, float* x, float* y, float* z) {
+void normals(const Sweep& s, int first_block, int end_block, float* x, float* y, float* z) {
     const Fields at = s.states[s.turn.at];
-    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int, std::ptrdiff_t i) HWY_ATTR {
+    for_each_pack<At>(s, first_block, end_block, [&](At& eyes, std::ptrdiff_t i) HWY_ATTR {
         store(eyes.outward(load(at.x, at.y, at.z, i)), x, y, z, i);
     });
 }
 
 template <class At>
-bool torn(const Sweep& s, int first_run, int end_run) {
+bool torn(const Sweep& s, int first_block, int end_block) {
     const Fields at = s.states[s.turn.at];
     Pack wrong = 0.0f;
-    for_each_pack<At>(s, at, first_run, end_run, [&](At& eyes, int, std::ptrdiff_t i) HWY_ATTR {
+    for_each_pack<At>(s, first_block, end_block, [&](At& eyes, std::ptrdiff_t i) HWY_ATTR {
         wrong += eyes.torn(load(at.x, at.y, at.z, i));
     });
     return any_node(wrong > 0.0f);
@@ -360,26 +448,21 @@ auto of(Springs springs, Act act) {
     return act.template operator()<TableNode>();
 }
 
-void pass_over(const Sweep& s, int first_run, int end_run, Largest& largest) {
-    of(s.body.springs, [&]<class At>() {
-        if (QuietPass::fits(s.pass))
-            pass<typename At::Quiet>(s, first_run, end_run, largest);
-        else
-            pass<At>(s, first_run, end_run, largest);
-    });
+void pass_over(const Sweep& s, int first_block, int end_block, Largest& largest) {
+    of(s.body.springs, [&]<class At>() { pass<At>(s, first_block, end_block, largest); });
 }
-void give_over(const Sweep& s, int first_run, int end_run, Given* of_run) {
-    of(s.body.springs, [&]<class At>() { give<At>(s, first_run, end_run, of_run); });
+void give_over(const Sweep& s, int first_block, int end_block, Given* of_block) {
+    of(s.body.springs, [&]<class At>() { give<At>(s, first_block, end_block, of_block); });
 }
-void normals_over(const Sweep& s, int first_run, int end_run, float* x, float* y, float* z) {
-    of(s.body.springs, [&]<class At>() { normals<At>(s, first_run, end_run, x, y, z); });
+void normals_over(const Sweep& s, int first_block, int end_block, float* x, float* y, float* z) {
+    of(s.body.springs, [&]<class At>() { normals<At>(s, first_block, end_block, x, y, z); });
 }
-bool torn_over(const Sweep& s, int first_run, int end_run) {
-    return of(s.body.springs, [&]<class At>() { return torn<At>(s, first_run, end_run); });
+bool torn_over(const Sweep& s, int first_block, int end_block) {
+    return of(s.body.springs, [&]<class At>() { return torn<At>(s, first_block, end_block); });
 }
 
 Kernels all() {
-    return {hwy::TargetName(HWY_TARGET), int(lanes()), pass_over, give_over, normals_over, torn_over};
+    return {hwy::TargetName(HWY_TARGET), int(lanes()), pass_over, give_over, find_bounds, normals_over, torn_over};
 }
 
 }  // namespace palpate::cpu::HWY_NAMESPACE

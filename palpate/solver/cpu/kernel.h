@@ -30,6 +30,9 @@ struct TieFields {
 struct Laid {
     Springs springs;
     const Run* runs;
+    const Block* blocks;
+    const Bounds* rest_bounds;           // m, of each block's nodes
+    const float* furthest_cover;         // m, of each block's nodes
     const int* offsets;                  // a grid's
     std::array<vec3, 32> along;          // a grid's: each link at rest, m
     float spacing;                       // m, where links follow the axes
@@ -45,12 +48,13 @@ struct Laid {
                                          // them exactly beside the place at rest
 };
 
-/// One pass over some runs.
+/// One pass over some blocks.
 struct Sweep {
     const Laid& body;
     const Pass& pass;
     const Turn& turn;
-    const Fields* states;       // as Where counts them
+    const Fields* states;        // as Where counts them
+    std::array<Bounds*, 4> moved;  // of each state and block: how far its nodes have come from their places at rest, m
     std::array<int, 8> dragged;  // slot of each drag
 };
 
@@ -59,19 +63,24 @@ struct Largest {
     float speed = 0, move = 0;  // m²/s², m²
 };
 
-/// What tips and drags give to the nodes of one run, N s.
+/// What tips and drags give to the nodes of one block, N s.
 struct Given {
     std::array<dvec3, 8> by_tip{}, by_drag{};
 };
 
-/// The kernels for this machine's instruction set. Each works on the runs from one to before another.
+/// Whether a tip or a drag, or an obstacle, may touch nodes of a block that have come so far from their places at rest.
+bool touched(const Sweep& sweep, int block, const Bounds& moved);
+bool near_obstacles(const Sweep& sweep, int block, const Bounds& moved);
+
+/// The kernels for this machine's instruction set. Each works on the blocks from one to before another.
 struct Kernels {
     const char* instructions;  // their name: AVX2, AVX3 (AVX-512), NEON …
     int lanes;                 // floats in a register
-    void (*pass)(const Sweep&, int first_run, int end_run, Largest& largest);
-    void (*give)(const Sweep&, int first_run, int end_run, Given* of_run);
-    void (*normals)(const Sweep&, int first_run, int end_run, float* x, float* y, float* z);
-    bool (*torn)(const Sweep&, int first_run, int end_run);
+    void (*pass)(const Sweep&, int first_block, int end_block, Largest& largest);
+    void (*give)(const Sweep&, int first_block, int end_block, Given* of_block);
+    void (*find_bounds)(const Sweep&, int first_block, int end_block);
+    void (*normals)(const Sweep&, int first_block, int end_block, float* x, float* y, float* z);
+    bool (*torn)(const Sweep&, int first_block, int end_block);
 };
 const Kernels& kernels();
 

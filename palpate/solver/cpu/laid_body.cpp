@@ -100,7 +100,11 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
         lay_table(body);
     else
         lay_grid(body);
+    bound_blocks(body);
     view_.runs = layout_.runs.data();
+    view_.blocks = layout_.blocks.data();
+    view_.rest_bounds = rest_bounds_.data();
+    view_.furthest_cover = furthest_cover_.data();
     view_.offsets = layout_.offsets.data();
     view_.inverse_mass = spread(body.inverse_mass);
     view_.area = spread(body.area);
@@ -155,6 +159,18 @@ void LaidBody::lay_table(const Body& body) {
         ties_.push_back({to, fields[0], fields[1], fields[2], fields[3], fields[4], fields[5], fields[6]});
     }
     view_.ties = ties_.data();
+}
+
+void LaidBody::bound_blocks(const Body& body) {
+    rest_bounds_.resize(layout_.blocks.size());
+    furthest_cover_.assign(layout_.blocks.size(), 0);
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        const auto after = std::upper_bound(layout_.blocks.begin(), layout_.blocks.end(), layout_.slot[i],
+                                            [](int slot, const Block& block) { return slot < block.first_slot; });
+        const auto block = std::size_t(after - layout_.blocks.begin()) - 1;
+        rest_bounds_[block].include(body.positions[i]);
+        furthest_cover_[block] = std::max(furthest_cover_[block], body.cover[i]);
+    }
 }
 
 float* LaidBody::keep() {

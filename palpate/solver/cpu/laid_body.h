@@ -24,6 +24,7 @@ class LaidBody {
              const std::pair<Springs, std::vector<vec3>>& springs);
     void lay_grid(const Body& body);
     void lay_table(const Body& body);
+    void bound_blocks(const Body& body);
     const float* spread(const std::vector<float>& of_nodes);
     float* keep();
 
@@ -34,6 +35,8 @@ class LaidBody {
     std::vector<Array<int>> ints_;
     std::vector<Array<std::uint32_t>> words_;
     std::vector<TieFields> ties_;
+    std::vector<Bounds> rest_bounds_;      // of blocks
+    std::vector<float> furthest_cover_;    // of blocks
     std::vector<vec3> corners_;
     std::vector<const DistanceField*> fields_;
     Laid view_{};

@@ -8,8 +8,6 @@
 namespace palpate::cpu {
 namespace {
 
-constexpr int longest_run = 256;
-
 int rounded_up(int count, int lanes) { return (count + lanes - 1) / lanes * lanes; }
 
 // Nodes of one row with no gap as wide as a register.
@@ -111,7 +109,7 @@ class Laying {
     void add(int first, const std::vector<int>& offsets) {
         auto& runs = layout_.runs;
         const bool goes_on = !runs.empty() && runs.back().first + runs.back().count == first &&
-                             runs.back().count + lanes_ <= longest_run &&
+                             runs.back().count + lanes_ <= Block::most &&
                              std::equal(offsets.begin(), offsets.end(), layout_.offsets.end() - std::ptrdiff_t(offsets.size()));
         if (goes_on) {
             runs.back().count += lanes_;
@@ -159,12 +157,26 @@ class Laying {
 
 }  // namespace
 
-Layout::Layout(const Stencil& stencil, int lanes) { Laying(stencil, lanes, *this); }
+Layout::Layout(const Stencil& stencil, int lanes) {
+    Laying(stencil, lanes, *this);
+    make_blocks();
+}
 
 Layout::Layout(std::size_t nodes, int lanes) : slots(rounded_up(int(nodes), lanes)), margin(lanes) {
     for (std::size_t i = 0; i < nodes; ++i) slot.push_back(int(i));
-    for (int first = 0; first < slots; first += longest_run)
-        runs.push_back({first, std::min(longest_run, slots - first)});
+    for (int first = 0; first < slots; first += Block::most)
+        runs.push_back({first, std::min(Block::most, slots - first)});
+    make_blocks();
+}
+
+void Layout::make_blocks() {
+    for (int r = 0; r < int(runs.size()); ++r) {
+        const Run& run = runs[std::size_t(r)];
+        if (blocks.empty() || run.first + run.count - blocks.back().first_slot > Block::most)
+            blocks.push_back({r, r, run.first, run.first});
+        blocks.back().end_run = r + 1;
+        blocks.back().end_slot = run.first + run.count;
+    }
 }
 
 }  // namespace palpate::cpu

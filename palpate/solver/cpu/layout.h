@@ -15,11 +15,20 @@ struct Run {
     int count;  // of slots, a multiple of the lanes
 };
 
+/// Runs that lie one after the other: a few hundred slots that stay in the first cache together. What threads share, and
+/// what is asked as a whole whether a tool or an obstacle is near.
+struct Block {
+    static constexpr int most = 256;  // slots
+    int first_run, end_run;
+    int first_slot, end_slot;
+};
+
 /// Where the nodes of a body lie: each has a slot of its own, and along a row of the grid slots follow each other. What
 /// a run may read beside its own slots exists, but means nothing.
 struct Layout {
     std::vector<int> slot;     // of each node
-    std::vector<Run> runs;     // at most 256 slots each, so that threads can share them
+    std::vector<Run> runs;     // at most 256 slots each
+    std::vector<Block> blocks;
     std::vector<int> offsets;  // of each run and each link: from a slot to that of its neighbour
     int slots = 0;
     int margin = 0;  // slots before the first and behind the last that a run may read
@@ -31,6 +40,9 @@ struct Layout {
 
     /// A body whose springs are written out: in its own order.
     Layout(std::size_t nodes, int lanes);
+
+ private:
+    void make_blocks();
 };
 
 /// One T for each slot, zeros at first.

@@ -1,0 +1,66 @@
+#include "palpate/solver/cpu/kernel.h"
+
+namespace palpate::cpu {
+namespace {
+
+// Where the nodes of a block may be: its box at rest, grown by how far they have come.
+Bounds place(const Laid& body, int block, const Bounds& moved) {
+    const Bounds& rest = body.rest_bounds[block];
+    return {rest.low + moved.low, rest.high + moved.high};
+}
+
+// A comparison that fails for what is no number says near: then the nodes are looked at themselves.
+
+bool may_touch(const Bounds& box, vec3 centre, float reach) {
+    const vec3 nearest = glm::clamp(centre, box.low, box.high);
+    return !(glm::dot(centre - nearest, centre - nearest) > reach * reach);
+}
+
+bool may_touch(const Bounds& box, const Obstacle& o, const Laid& body) {
+    const vec3 half = 0.5f * box.size(), middle = box.centre();
+    const vec3 rows[] = {vec3(o.x), vec3(o.y), vec3(o.z)};
+    const float shift[] = {o.x.w, o.y.w, o.z.w};
+    Bounds in_frame;
+    for (int k = 0; k < 3; ++k) {
+        const float at = glm::dot(rows[k], middle) + shift[k], reach = glm::dot(glm::abs(rows[k]), half);
+        in_frame.low[k] = at - reach, in_frame.high[k] = at + reach;
+    }
+    const float hair = 1e-5f * (glm::length(middle) + glm::length(half) + glm::length(vec3(o.place)));
+    const float margin = o.place.w + hair;
+    auto apart = [&](vec3 low, vec3 high) {
+        for (int k = 0; k < 3; ++k)
+            if (in_frame.low[k] > high[k] + margin || in_frame.high[k] < low[k] - margin) return true;
+        return false;
+    };
+    if (o.kind.x == half_space) return !(in_frame.low.y > margin);
+    if (o.kind.x == round_box) return !apart(-vec3(o.size) - o.size.w, vec3(o.size) + o.size.w);
+    if (o.kind.x == field) {
+        const DistanceField& f = *body.fields[o.kind.y];
+        // Beyond its grid a field says what it says at the rim, a few spacings.
+        return !(o.place.w < f.spacing && apart(f.origin, f.origin + f.spacing * vec3(f.dims - 1)));
+    }
+    return true;  // polygons stop what crosses them, wherever it has got to
+}
+
+}  // namespace
+
+bool touched(const Sweep& sweep, int block, const Bounds& moved) {
+    const Block& of = sweep.body.blocks[block];
+    for (int d = 0; d < sweep.pass.drags; ++d)
+        if (const int slot = sweep.dragged[std::size_t(d)]; slot >= of.first_slot && slot < of.end_slot) return true;
+    const Bounds box = place(sweep.body, block, moved);
+    for (int t = 0; t < sweep.pass.tips; ++t) {
+        const vec4 tip = sweep.pass.tip[t];
+        if (may_touch(box, vec3(tip), 1.00001f * (tip.w + sweep.body.furthest_cover[block]))) return true;
+    }
+    return false;
+}
+
+bool near_obstacles(const Sweep& sweep, int block, const Bounds& moved) {
+    const Bounds box = place(sweep.body, block, moved);
+    for (int o = 0; o < sweep.pass.obstacles; ++o)
+        if (may_touch(box, sweep.pass.obstacle[o], sweep.body)) return true;
+    return false;
+}
+
+}  // namespace palpate::cpu
