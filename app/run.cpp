@@ -69,6 +69,8 @@ void print_summary(const Report& report) {
                  {"render",
                   fmt::format("{:6.2f} s   {:7.2f} ms a picture, {} pictures", report.seconds.render,
                               1000 * report.seconds.render / std::max(report.pictures, 1), report.pictures)},
+                 {"write", fmt::format("{:6.2f} s   {:7.2f} ms a picture", report.seconds.write,
+                                       1000 * report.seconds.write / std::max(report.pictures, 1))},
                  {"total", fmt::format("{:6.2f} s", report.seconds.total)}});
     for (const std::string& note : report.notes) fmt::print("  note: {}\n", note);
 }

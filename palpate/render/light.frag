@@ -37,6 +37,8 @@ float soft_key_share(vec3 place, vec3 normal) {
     const float narrow = 2, wide = 26;
     float pixels = textureSize(stopped, 0).x;
     vec3 seen = (to_shadow * vec4(place, 1)).xyz;
+    vec2 from_middle = abs(seen.xy - 0.5);
+    if (max(from_middle.x, from_middle.y) > 0.5 + wide / pixels) return 1;  // the map holds all that casts a shadow
     vec2 aside = vec2(wide / pixels, 0);
     float above = 0, count = 0;
     for (int i = 0; i < taps; ++i) {

@@ -150,9 +150,9 @@ void Renderer::Parts::draw(const Picture& picture) {
     upload(picture.surfaces);
     cast_shadows(picture, light);
     target.begin();
-    draw_background();
     glEnable(GL_DEPTH_TEST);
     draw_surfaces(picture.surfaces, programs.surface);
+    draw_background();
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     for (const Wires& some : picture.wires) draw_wires(some, seen, things);
@@ -183,9 +183,10 @@ void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light
 void Renderer::Parts::draw_background() const {
     programs.background.use();
     programs.background.set("picture", vec2(target.width(), target.height()));
-    glDisable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);  // where nothing is yet, which is as far
     glBindVertexArray(no_corners.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LESS);
 }
 
 void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const gl::Program& program) const {

@@ -1,7 +1,7 @@
 #version 450 core
-// One triangle that covers the whole picture.
+// One triangle that covers the whole picture, as far away as anything can be.
 
 void main() {
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-    gl_Position = vec4(4 * corner - 1, 0, 1);
+    gl_Position = vec4(4 * corner - 1, 1, 1);
 }

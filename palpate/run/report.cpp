@@ -89,6 +89,7 @@ void write_report(const Report& report, const std::filesystem::path& path) {
                    {"simulate", report.seconds.simulate},
                    {"map", report.seconds.map},
                    {"render", report.seconds.render},
+                   {"write", report.seconds.write},
                    {"total", report.seconds.total}}},
                  {"frames_per_second", report.frames_per_second()},
                  {"kinetic_energy_j", sum(report.bodies, &Body::kinetic_energy)},

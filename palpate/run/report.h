@@ -35,7 +35,7 @@ struct Report {
     };
     /// Of work, by its kind.
     struct Seconds {
-        double build = 0, simulate = 0, map = 0, render = 0, total = 0;
+        double build = 0, simulate = 0, map = 0, render = 0, write = 0, total = 0;
     };
 
     std::string scene, backend, integrator, renderer;

@@ -186,8 +186,8 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
 
     RestWatch watch(settings.until_rest, scene, made);
     auto draw = [&] {
-        Timed timed(report.seconds.render);
-        if (show) report.pictures += show->frame_done(report.frames, play);
+        if (show) report.pictures += show->frame_done(report.frames, play, report.seconds);
+        Timed timed(report.seconds.write);
         recording.frame_done(report.frames, report.simulated, play);
     };
     draw();

@@ -1,5 +1,6 @@
 #include "palpate/run/show.h"
 
+#include "palpate/base/clock.h"
 #include "palpate/base/files.h"
 #include "palpate/gl/context.h"
 #include "palpate/render/shapes.h"
@@ -42,13 +43,18 @@ Show::Show(const Scene& scene, const Models& made, const RunSettings& settings)
 
 const std::string& Show::renderer() const { return renderer_.context().renderer(); }
 
-bool Show::frame_done(int number, const Play& play) {
+bool Show::frame_done(int number, const Play& play, Report::Seconds& seconds) {
     const double time = number * frame_seconds;
     const bool film_wants = film_ && number % frames_per_picture == 0;
     const bool images_want = !settings_.images.empty() && time >= next_image_ - 1e-9;
     if (!film_wants && !images_want) return false;
-    renderer_.draw(picture(time, play));
-    const Image image = renderer_.image();
+    Image image;
+    {
+        Timed timed(seconds.render);
+        renderer_.draw(picture(time, play));
+        image = renderer_.image();
+    }
+    Timed timed(seconds.write);
     if (film_wants) film_->add(image);
     if (images_want) {
         write_png(image, settings_.images / fmt::format("{}-{:05.2f}s.png", scene_.name, time));
