@@ -45,18 +45,21 @@ nlohmann::json described(const Timings& timings) {
                          {"best_per_second", timings.rates[c].best},
                          {"median_per_second", timings.rates[c].median},
                          {"links_each", timings.cases[c].links},
-                         {"bytes_each", timings.cases[c].bytes}});
+                         {"bytes_moved_each", timings.cases[c].bytes},
+                         {"bytes_kept_each", timings.cases[c].memory}});
     return {{"limits", limits}, {"cases", cases}};
 }
 
 void run_benchmarks(const Arguments& arguments) {
     const unsigned cores = std::thread::hardware_concurrency();
-    fmt::print("Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
-               processor(), cores, cores == 1 ? "" : "s", cpu_instructions(), arguments.rounds);
+    fmt::print(
+        "Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
+        processor(), cores, cores == 1 ? "" : "s", cpu_instructions(), arguments.rounds);
     nlohmann::json all;
     for (const Benchmark& benchmark : benchmarks()) {
         const auto& wanted = arguments.names;
-        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), benchmark.name) == wanted.end()) continue;
+        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), benchmark.name) == wanted.end())
+            continue;
         const Timings timings = time(benchmark.cases(), arguments.rounds);
         fmt::print("\n### {}: {}\n\n{}", benchmark.name, benchmark.about, markdown(timings, benchmark.unit));
         std::fflush(stdout);

@@ -59,8 +59,8 @@ void print_summary(const Report& report) {
         print_table({{"tool", tool.name},
                      {"largest force", fmt::format("{:.3g} N", tool.largest_force)},
                      {"deepest indentation", fmt::format("{:.1f} mm", 1000 * tool.deepest_indentation)}});
-    print_table({{"solver", fmt::format("{}, {}, {} thread{}", report.backend, report.integrator, report.threads,
-                                        report.threads > 1 ? "s" : "")},
+    print_table({{"solver", fmt::format("{}, {}, {} thread{}", report.backend, report.integrator,
+                                        report.threads, report.threads > 1 ? "s" : "")},
                  {"simulated", fmt::format("{:.2f} s in {} frames{}", report.simulated, report.frames,
                                            report.rest ? ", then at rest" : "")},
                  {"build", fmt::format("{:6.2f} s", report.seconds.build)},
@@ -105,7 +105,8 @@ void add_run(CLI::App& app) {
     CLI::App* command = app.add_subcommand("run", "Run a scene, off screen, and write what is asked for");
     command->add_option("scene", arguments->scene, "a TOML file, or the name of a shipped scene")->required();
     command->add_option("--backend", arguments->backend, "see: palpate list backends");
-    command->add_option("--threads", arguments->threads, "that simulate and map [1]")->check(CLI::Range(1, most_threads));
+    command->add_option("--threads", arguments->threads, "that simulate and map [1]")
+        ->check(CLI::Range(1, most_threads));
     command->add_option("--integrator", arguments->integrator, "see: palpate list integrators");
     auto* frames = command->add_option("--frames", settings.frames, "stop after so many frames of 1/60 s");
     auto* steps = command->add_option("--steps", settings.steps, "stop after so many steps of the solver")

@@ -56,8 +56,8 @@ std::vector<Case> bullet(const Body& body) {
             return Work{now() - start, times * nodes};
         };
     };
-    return {{"Bullet: all links once", timed(10, &Soft::links), links, 0, 1},
-            {"Bullet: a step", timed(5, &Soft::step), links, 0, 1}};
+    return {{"Bullet: all links once", timed(10, &Soft::links), links, 0, 0, 1},
+            {"Bullet: a step", timed(5, &Soft::step), links, 0, 0, 1}};
 }
 #else
 std::vector<Case> bullet(const Body&) { return {}; }

@@ -47,8 +47,8 @@ Mesh ball(float radius, unsigned rings) {
     for (unsigned r = 1; r < rings; ++r)
         for (unsigned a = 0; a < around; ++a) {
             const float polar = pi * float(r) / float(rings), turn = 2 * pi * float(a) / float(around);
-            mesh.positions.push_back(
-                radius * vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)));
+            mesh.positions.push_back(radius * vec3(std::sin(polar) * std::cos(turn),
+                                                   std::sin(polar) * std::sin(turn), std::cos(polar)));
         }
     mesh.positions.push_back({0, 0, -radius});
     const unsigned last = unsigned(mesh.positions.size()) - 1;
@@ -66,7 +66,8 @@ Mesh ball(float radius, unsigned rings) {
 }
 
 // The surface carried by nodes that do not move: that costs as much.
-Case carrying(std::string name, const Mesh& surface, const Body& body, Mapping mapping, int threads, double bytes) {
+Case carrying(std::string name, const Mesh& surface, const Body& body, Mapping mapping, int threads,
+              double bytes) {
     struct Carried {
         Embedding skin;
         std::vector<vec3> nodes, normals, positions, turned;
@@ -86,7 +87,10 @@ Case carrying(std::string name, const Mesh& surface, const Body& body, Mapping m
                            threads > 1 ? &all->team : nullptr);
                 return Work{palpate::now() - start, 10 * vertices};
             },
-            0, bytes, threads};
+            0,
+            bytes,
+            0,
+            threads};
 }
 
 }  // namespace
@@ -102,7 +106,8 @@ std::vector<Case> lattice_cases() {
     add("27³, shares, 2 threads", box, with(Backend::cpu, 2));
     add("64³, shares", large, with(Backend::cpu));
     add("64³, shares, 2 threads", large, with(Backend::cpu, 2));
-    add("ball of 20,000 nodes", lattice(ball(0.1f, 60), {.nodes = 20'000, .material = tissue}), with(Backend::cpu));
+    add("ball of 20,000 nodes", lattice(ball(0.1f, 60), {.nodes = 20'000, .material = tissue}),
+        with(Backend::cpu));
     try {
         const Scene scene = read_scene("brain");
         add("brain of 20,000 nodes", build(scene).models.front().body, with(Backend::cpu));
@@ -112,8 +117,8 @@ std::vector<Case> lattice_cases() {
     Body hard = box;
     strengthen(hard, std::vector<float>(box.count(), 1.5f));
     add("27³, a stiffness for each node", hard, with(Backend::cpu));
-    add("27³, 32 links (2012)", lattice(ivec3(27), 0.01f, SpringKinds{100, 50, 10}, {.mass = 1, .damping = 5}),
-        with(Backend::cpu));
+    add("27³, 32 links (2012)",
+        lattice(ivec3(27), 0.01f, SpringKinds{100, 50, 10}, {.mass = 1, .damping = 5}), with(Backend::cpu));
     Body written = box;
     written.springs = table(box);
     add("27³, springs in a table", written, with(Backend::cpu));
@@ -133,7 +138,8 @@ std::vector<Case> cloth_cases() {
                                      cloth(ivec2(size), 0.01f, linen), with(Backend::cpu, threads)));
     ClothSettings damped = linen;
     damped.link_damping = 1e-4f;
-    cases.push_back(stepping("128², damping along the springs", cloth(ivec2(128), 0.01f, damped), with(Backend::cpu)));
+    cases.push_back(
+        stepping("128², damping along the springs", cloth(ivec2(128), 0.01f, damped), with(Backend::cpu)));
     const Body sheet = cloth(ivec2(128), 0.01f, linen);
     cases.push_back(stepping("128² of triangles", cloth(face_mesh(sheet), linen), with(Backend::cpu)));
     cases.push_back(stepping("128², the scalar reference", sheet, with(Backend::reference)));
@@ -147,10 +153,14 @@ std::vector<Case> embed_cases() {
     std::vector<Case> cases;
     for (int threads : {1, 2}) {
         const std::string on = threads > 1 ? ", 2 threads" : "";
-        cases.push_back(carrying("trilinear" + on, surface, body, Mapping::trilinear, threads, sizeof(InCell) + written));
-        cases.push_back(carrying("frames" + on, surface, body, Mapping::frames, threads, sizeof(OnFrames) + written));
-        cases.push_back(carrying("interpolated" + on, surface, body, Mapping::interpolated, threads, sizeof(OnTriangle) + written));
-        cases.push_back(carrying("constant" + on, surface, body, Mapping::constant, threads, sizeof(OnTriangle) + written));
+        cases.push_back(
+            carrying("trilinear" + on, surface, body, Mapping::trilinear, threads, sizeof(InCell) + written));
+        cases.push_back(
+            carrying("frames" + on, surface, body, Mapping::frames, threads, sizeof(OnFrames) + written));
+        cases.push_back(carrying("interpolated" + on, surface, body, Mapping::interpolated, threads,
+                                 sizeof(OnTriangle) + written));
+        cases.push_back(carrying("constant" + on, surface, body, Mapping::constant, threads,
+                                 sizeof(OnTriangle) + written));
     }
     return cases;
 }

@@ -19,8 +19,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::ScalableTag<float>;
 using V = hn::Vec<Lanes>;
 
-// The springs of nodes that never leave the registers, from a few neighbours that never leave the first cache:
-// subtract, square, estimate the reciprocal root, one step of Newton's, add up. Two chains, so that none waits.
+// The springs of nodes that never leave the registers, from a few neighbours that never leave the first
+// cache: subtract, square, estimate the reciprocal root, one step of Newton's, add up. Two chains, so that
+// none waits.
 double links(int times) {
     constexpr std::size_t packs = 32;
     const Lanes d;
@@ -35,7 +36,8 @@ double links(int times) {
         for (std::size_t p = 0; p < packs; p += 2)
             for (std::size_t chain = 0; chain < 2; ++chain) {
                 const std::size_t i = (p + chain) * lanes;
-                const V x = hn::Sub(hn::Load(d, from[0] + i), here), y = hn::Sub(hn::Load(d, from[1] + i), here),
+                const V x = hn::Sub(hn::Load(d, from[0] + i), here),
+                        y = hn::Sub(hn::Load(d, from[1] + i), here),
                         z = hn::Sub(hn::Load(d, from[2] + i), here);
                 const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::MulAdd(z, z, tiny)));
                 const V e = hn::ApproximateReciprocalSqrt(square);

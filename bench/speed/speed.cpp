@@ -19,16 +19,16 @@ Rate rate_of(std::vector<double> rates) {
     return {rates.back(), rates[rates.size() / 2]};
 }
 
-// Read or written by the passes of a step, with nothing fetched twice: the state where forces are taken, that where the
-// step began, the sum, the shares of 18 links (eight bytes) and the inverse mass.
+// Read or written by the passes of a step, with nothing fetched twice: the state where forces are taken, that
+// where the step began, the sum, the shares of 18 links (eight bytes) and the inverse mass.
 double bytes_of_a_step(Integrator integrator) {
     constexpr double state = 24, fixed = 12;
     double bytes = 0;
     for (const Stage& stage : scheme(integrator).stages) {
         const bool first = &stage == &scheme(integrator).stages.front();
-        bytes += state + fixed + state;                                 // at, next
-        bytes += first ? 0 : state;                                     // where it began, or the sum
-        bytes += stage.part > 0 ? (first ? state : 2 * state) : 0;      // to the sum
+        bytes += state + fixed + state;                             // at, next
+        bytes += first ? 0 : state;                                 // where it began, or the sum
+        bytes += stage.part > 0 ? (first ? state : 2 * state) : 0;  // to the sum
     }
     return bytes;
 }
@@ -77,39 +77,46 @@ Case stepping(std::string name, const Body& body, const Simulation& how) {
                 return Work{now() - start, nodes * stats.steps};
             },
             table(body).width * forces,
-            bytes_of_a_step(simulation.integrator), simulation.threads};
+            bytes_of_a_step(simulation.integrator),
+            double(solver->memory()) / nodes,
+            simulation.threads};
 }
 
 std::string markdown(const Timings& timings, const std::string& unit) {
     std::string text = fmt::format(
-        "| | {} a second: best | median | links a second | bytes each | of the arithmetic limit | of a copy |\n"
-        "| --- | --- | --- | --- | --- | --- | --- |\n",
+        "| | {} a second: best | median | links a second | of the arithmetic limit | bytes moved for each | "
+        "of a copy "
+        "| bytes kept for each |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
         unit);
     auto millions = [](double a) { return fmt::format("{:.{}f} M", a / 1e6, a < 1e7 ? 2 : 0); };
     for (std::size_t t = 0; t < timings.arithmetic.size(); ++t)
-        text += fmt::format("| the limits, {} thread{} | | | {} ({}) | {:.1f} GB/s ({:.1f}) | | |\n", t + 1,
-                            t > 0 ? "s" : "", millions(timings.arithmetic[t].best), millions(timings.arithmetic[t].median),
-                            timings.copying[t].best / 1e9, timings.copying[t].median / 1e9);
+        text += fmt::format("| the limits, {} thread{} | | | {} ({}) | 1 | | {:.1f} GB/s ({:.1f}) | |\n",
+                            t + 1, t > 0 ? "s" : "", millions(timings.arithmetic[t].best),
+                            millions(timings.arithmetic[t].median), timings.copying[t].best / 1e9,
+                            timings.copying[t].median / 1e9);
     for (std::size_t c = 0; c < timings.cases.size(); ++c) {
         const Case& of = timings.cases[c];
         const Rate rate = timings.rates[c];
         const std::size_t threads = std::min(std::size_t(of.threads), timings.arithmetic.size()) - 1;
         text += fmt::format("| {} | {} | {} |", of.name, millions(rate.best), millions(rate.median));
         text += of.links > 0 ? fmt::format(" {} |", millions(of.links * rate.best)) : " |";
-        text += of.bytes > 0 ? fmt::format(" {:.0f} |", of.bytes) : " |";
-        text += of.links > 0 ? fmt::format(" {:.2f} ({:.2f}) |", of.links * rate.best / timings.arithmetic[threads].best,
+        text += of.links > 0 ? fmt::format(" {:.2f} ({:.2f}) |",
+                                           of.links * rate.best / timings.arithmetic[threads].best,
                                            of.links * rate.median / timings.arithmetic[threads].median)
                              : " |";
-        text += of.bytes > 0 ? fmt::format(" {:.2f} ({:.2f}) |\n", of.bytes * rate.best / timings.copying[threads].best,
+        text += of.bytes > 0 ? fmt::format(" {:.0f} | {:.2f} ({:.2f}) |", of.bytes,
+                                           of.bytes * rate.best / timings.copying[threads].best,
                                            of.bytes * rate.median / timings.copying[threads].median)
-                             : " |\n";
+                             : " | |";
+        text += of.memory > 0 ? fmt::format(" {:.0f} |\n", of.memory) : " |\n";
     }
     return text;
 }
 
 const std::vector<Benchmark>& benchmarks() {
     static const std::vector<Benchmark> all = {
-        {"lattice", "steps of lattices, against the machine's limits and Bullet", "node-steps", lattice_cases},
+        {"lattice", "steps of lattices, against the machine's limits and Bullet", "node-steps",
+         lattice_cases},
         {"cloth", "steps of cloths", "node-steps", cloth_cases},
         {"embed", "a surface of 160,000 vertices carried by its nodes", "vertices", embed_cases}};
     return all;

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-// How fast Palpate is: against what this machine can do at best, and against others. `palpate bench` prints it.
+// How fast Palpate is: against what this machine can do at best, and against others. `palpate bench` prints
+// it.
 
 namespace palpate::speed {
 
@@ -22,6 +23,7 @@ struct Case {
     std::function<Work()> run;  // some of it, for a twentieth of a second or so
     double links = 0;           // evaluated for a unit, those that a node lacks included: they cost as much
     double bytes = 0;           // that have to be read or written for a unit
+    double memory = 0;          // bytes that a unit's node keeps
     int threads = 1;
 };
 
@@ -30,24 +32,25 @@ struct Rate {
     double best = 0, median = 0;
 };
 
-/// What became of cases, and beside them of the machine's own limits: all ran by turns, so that each met the same noise.
+/// What became of cases, and beside them of the machine's own limits: all ran by turns, so that each met the
+/// same noise.
 struct Timings {
     std::vector<Case> cases;
-    std::vector<Rate> rates;                 // of the cases
-    std::vector<Rate> arithmetic, copying;   // links and bytes a second on 1, 2, ... threads
+    std::vector<Rate> rates;                // of the cases
+    std::vector<Rate> arithmetic, copying;  // links and bytes a second on 1, 2, ... threads
 };
 Timings time(std::vector<Case> cases, int rounds);
 
-/// The limits: springs that never leave the registers (for each a reciprocal root and 13 operations), and a copy that is
-/// too large for the caches.
+/// The limits: springs that never leave the registers (for each a reciprocal root and 13 operations), and a
+/// copy that is too large for the caches.
 Work arithmetic(int threads);
 Work copying(int threads);
 
 /// Steps of a body, of 10 µs each.
 Case stepping(std::string name, const Body& body, const Simulation& how);
 
-/// Bullet's soft body of the same nodes and springs: a pass over its links, or a whole step. No case where Palpate was
-/// built without it.
+/// Bullet's soft body of the same nodes and springs: a pass over its links, or a whole step. No case where
+/// Palpate was built without it.
 std::vector<Case> bullet(const Body& body);
 
 /// A table, in Markdown.

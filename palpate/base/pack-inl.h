@@ -1,6 +1,6 @@
-// Pack: as many floats as a SIMD register holds, and Pack3, three of them, with GLSL's words. For code that is compiled
-// once for each instruction set by Highway's foreach_target: included inside HWY_NAMESPACE, once for each (so it has no
-// include guard), after FN is defined.
+// Pack: as many floats as a SIMD register holds, and Pack3, three of them, with GLSL's words. For code that
+// is compiled once for each instruction set by Highway's foreach_target: included inside HWY_NAMESPACE, once
+// for each (so it has no include guard), after FN is defined.
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::ScalableTag<float>;
@@ -95,7 +95,8 @@ FN Pack3 load_each(At at) {
     auto every_fourth = [&](std::size_t from) HWY_ATTR {
 #if HWY_TARGET == HWY_AVX3
         const hn::FixedTag<float, 8> eight;
-        return hn::Combine(d, hn::Combine(eight, hn::LoadU(four, at(from + 12)), hn::LoadU(four, at(from + 8))),
+        return hn::Combine(d,
+                           hn::Combine(eight, hn::LoadU(four, at(from + 12)), hn::LoadU(four, at(from + 8))),
                            hn::Combine(eight, hn::LoadU(four, at(from + 4)), hn::LoadU(four, at(from))));
 #elif HWY_TARGET == HWY_AVX2
         return hn::Combine(d, hn::LoadU(four, at(from + 4)), hn::LoadU(four, at(from)));

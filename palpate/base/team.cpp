@@ -14,8 +14,8 @@ void pause() {
 #endif
 }
 
-// Until a counter leaves a value. Whoever waits for another member's work gets it within microseconds; between
-// calls it may be long.
+// Until a counter leaves a value. Whoever waits for another member's work gets it within microseconds;
+// between calls it may be long.
 void wait_while(const std::atomic<unsigned>& counter, unsigned value) {
     constexpr int spins = 4000;  // some 50 to 100 µs
     for (int i = 0; i < spins; ++i) {
@@ -29,7 +29,8 @@ void wait_while(const std::atomic<unsigned>& counter, unsigned value) {
 
 Team::Team(int members) {
     assert(members >= 1);
-    for (int member = 1; member < members; ++member) threads_.emplace_back([this, member] { stand_by(member); });
+    for (int member = 1; member < members; ++member)
+        threads_.emplace_back([this, member] { stand_by(member); });
 }
 
 Team::~Team() {

@@ -18,7 +18,8 @@ class Team {
 
     int members() const { return int(threads_.size()) + 1; }
 
-    /// Calls work(member) once for each member, all at the same time; returns when all have. It does not throw.
+    /// Calls work(member) once for each member, all at the same time; returns when all have. It does not
+    /// throw.
     void run(const std::function<void(int)>& work);
 
     /// In run(): waits until all members are here. What each wrote before, all see after.

@@ -100,9 +100,11 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
     body.spacing = spacing;
     body.fan = 4;
     Stencil& springs = body.springs.emplace<Stencil>();
-    const float stiffness[] = {settings.stiffness.structural, settings.stiffness.shear, settings.stiffness.flexion};
+    const float stiffness[] = {settings.stiffness.structural, settings.stiffness.shear,
+                               settings.stiffness.flexion};
     for (std::size_t l = 0; l < cloth_links.size(); ++l)
-        springs.links.push_back({cloth_links[l], stiffness[l / 4], spacing * glm::length(vec3(cloth_links[l]))});
+        springs.links.push_back(
+            {cloth_links[l], stiffness[l / 4], spacing * glm::length(vec3(cloth_links[l]))});
 
     const ivec3 size(dims, 1);
     auto in_grid = [&](ivec3 p) {

@@ -1,5 +1,5 @@
-// Carries surfaces along: mapping.inl for as many vertices at once as a register holds floats, compiled once for each
-// instruction set.
+// Carries surfaces along: mapping.inl for as many vertices at once as a register holds floats, compiled once
+// for each instruction set.
 #include "palpate/base/team.h"
 #include "palpate/body/embedding_parts.h"
 
@@ -43,7 +43,8 @@ struct Text {
 #include "palpate/body/mapping.inl"
 };
 
-// Vertices side by side: those from `first` on, or as many as there are before `end` and the last again and again.
+// Vertices side by side: those from `first` on, or as many as there are before `end` and the last again and
+// again.
 template <class Vertex>
 class Lanewise : Text {
  public:
@@ -60,7 +61,7 @@ class Lanewise : Text {
     FN std::size_t number(std::size_t lane) const { return std::min(first_ + lane, end_ - 1); }
     FN const Vertex& vertex(std::size_t lane) const { return vertices_[number(lane)]; }
 
-    FN Pack3 each(vec3 Vertex::* member) const {
+    FN Pack3 each(vec3 Vertex::*member) const {
         return load_each([&](std::size_t lane) HWY_ATTR { return &(vertex(lane).*member).x; });
     }
     template <class Index>
@@ -92,9 +93,11 @@ class Lanewise : Text {
             node[k] = each(work_.positions, index);
             if (!flat) approximate += w[k] * clear_direction(each(work_.normals, index));
         }
-        Followed f = on_triangle(node[0], node[1], node[2], approximate, ::palpate::HWY_NAMESPACE::load(curvatures));
+        Followed f =
+            on_triangle(node[0], node[1], node[2], approximate, ::palpate::HWY_NAMESPACE::load(curvatures));
         const Pack3 offset = each(&OnTriangle::offset), n = each(&OnTriangle::normal);
-        f.position = w[0] * node[0] + (w[1] * node[1] + w[2] * node[2]) + expand(f, offset.x, offset.y, offset.z);
+        f.position =
+            w[0] * node[0] + (w[1] * node[1] + w[2] * node[2]) + expand(f, offset.x, offset.y, offset.z);
         put(f, direction(expand(f, n.x, n.y, n.z), f.y));
     }
 
@@ -106,7 +109,8 @@ class Lanewise : Text {
         for (std::size_t k = 0; k < 3; ++k) {
             const Pack3 arm = load_each([&](std::size_t lane) HWY_ATTR { return &vertex(lane).arms[k].x; });
             auto column = [&](int c) HWY_ATTR {
-                return load_each([&](std::size_t lane) HWY_ATTR { return &work_.frames[vertex(lane).frames[k]][c].x; });
+                return load_each([&](std::size_t lane)
+                                     HWY_ATTR { return &work_.frames[vertex(lane).frames[k]][c].x; });
             };
             const Pack3 x = column(0), y = column(1), z = column(2);
             f.position += w[k] * (column(3) + (arm.x * x + (arm.y * y + arm.z * z)));
@@ -142,7 +146,8 @@ class Lanewise : Text {
 };
 
 template <class Vertex>
-void carry_all(const Carrying& work, const std::vector<Vertex>& vertices, std::size_t first, std::size_t end) {
+void carry_all(const Carrying& work, const std::vector<Vertex>& vertices, std::size_t first,
+               std::size_t end) {
     for (std::size_t i = first; i < end; i += lanes()) Lanewise<Vertex>(work, vertices, i, end).carry();
 }
 
@@ -193,7 +198,9 @@ void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size
                   faces = i > 0 ? framed.frames[i - 1].faces_end : 0;
         const vec4 here = nodes[std::size_t(frame.node)];
         Four x = four(frame.rest[0]), y = four(frame.rest[1]), z = four(frame.rest[2]);
-        auto add = [&](Four along, vec3 pull) { x += pull.x * along, y += pull.y * along, z += pull.z * along; };
+        auto add = [&](Four along, vec3 pull) {
+            x += pull.x * along, y += pull.y * along, z += pull.z * along;
+        };
         for (int s = spokes; s < frame.spokes_end; ++s) {
             const Spoke& spoke = framed.spokes[std::size_t(s)];
             add(four(nodes[std::size_t(spoke.to)]) - four(here), spoke.pull);
@@ -225,8 +232,13 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
                             facing = with_room(on_triangles ? nodes.normals : std::span<const vec3>());
     std::vector<mat4> frames(framed ? framed->frames.size() : 0);
     const bool with_tangents = tangents && !tangents->empty();
-    const Carrying work{embedding,        at.data(),      facing.data(), frames.data(),
-                        positions.data(), normals.data(), with_tangents ? tangents->data() : nullptr};
+    const Carrying work{embedding,
+                        at.data(),
+                        facing.data(),
+                        frames.data(),
+                        positions.data(),
+                        normals.data(),
+                        with_tangents ? tangents->data() : nullptr};
     const std::size_t members = std::size_t(team ? team->members() : 1);
     auto share = [&](int member) {
         auto part = [&](std::size_t all) { return all * std::size_t(member) / members; };

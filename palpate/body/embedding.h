@@ -99,8 +99,8 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping = Mapping
 /// Positions and unit normals of the surface for the nodes' current places, and if asked its tangents: unit,
 /// at right angles to the normals, their handedness kept. Outputs are resized; tangents are empty if the mesh
 /// had none. The nodes' approximate normals are used by one-to-one, interpolated and normal-offset; the
-/// others need none. Collapsed triangles and cells give finite positions and unit normals all the same. A team, if
-/// there is one, shares the work; it changes no bit.
+/// others need none. Collapsed triangles and cells give finite positions and unit normals all the same. A
+/// team, if there is one, shares the work; it changes no bit.
 void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
             std::vector<vec3>& normals, std::vector<vec4>* tangents = nullptr, Team* team = nullptr);
 

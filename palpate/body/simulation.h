@@ -41,7 +41,8 @@ inline constexpr int most_threads = 256;
 /// How a body is moved.
 struct Simulation {
     Backend backend = Backend::cpu;
-    int threads = 1;  // of the backend cpu, at most most_threads; the motion is the same to the bit with any number
+    int threads =
+        1;  // of the backend cpu, at most most_threads; the motion is the same to the bit with any number
     Integrator integrator = Integrator::verlet;
     double step = 0;                    // s; 0 chooses 0.7 of the stability bound
     bool force = false;                 // accept a step above the bound

@@ -18,7 +18,8 @@ class Show {
     /// The OpenGL driver.
     const std::string& renderer() const;
 
-    /// Frame 0 is the state before the first step. Returns whether it drew; the time goes to what it took it for.
+    /// Frame 0 is the state before the first step. Returns whether it drew; the time goes to what it took it
+    /// for.
     bool frame_done(int number, const Play& play, Report::Seconds& seconds);
 
     /// After the last frame.

@@ -12,7 +12,8 @@ namespace palpate {
 
 #include "palpate/solver/pass.inl"
 
-/// A pass with all that stays the same for a body: gravity, damping, the springs of its stencil. Nothing touches it.
+/// A pass with all that stays the same for a body: gravity, damping, the springs of its stencil. Nothing
+/// touches it.
 Pass make_pass(const Body& body, const Simulation& simulation);
 
 /// Puts tips and drags where they are `time` seconds into the call.
@@ -27,8 +28,8 @@ std::vector<vec3> polygon_corners(const Simulation& simulation);
 /// The distance fields in their order.
 std::vector<const DistanceField*> distance_fields(const Simulation& simulation);
 
-/// Squared length at which a spring counts as torn, m²: ten times its rest length, or the body's spacing where that
-/// is more.
+/// Squared length at which a spring counts as torn, m²: ten times its rest length, or the body's spacing
+/// where that is more.
 inline float torn_at(float rest, const Body& body) {
     const float longest = 10 * std::max(rest, body.spacing);
     return longest * longest;

@@ -19,7 +19,8 @@ bool needs(const Scheme& scheme, Where where) {
     return false;
 }
 
-double step_under(const Influences& influences, const Body& body, const Simulation& simulation, double frequency) {
+double step_under(const Influences& influences, const Body& body, const Simulation& simulation,
+                  double frequency) {
     if (simulation.step > 0) return simulation.step;
     float contact = 0, pull = 0;  // they may all meet at one node
     for (const Press& press : influences.presses) contact += pressure_per_metre(press);

@@ -4,9 +4,9 @@
 
 namespace palpate {
 
-/// The states of a body that a backend keeps. A step begins at `current`. Its passes write between and further by turns;
-/// the last of several writes over `current`, whose neighbours nobody looks at any more. The only one of a step writes
-/// between, and the two change places.
+/// The states of a body that a backend keeps. A step begins at `current`. Its passes write between and
+/// further by turns; the last of several writes over `current`, whose neighbours nobody looks at any more.
+/// The only one of a step writes between, and the two change places.
 enum Where { current, between, further, sum };
 
 /// Which of them a scheme needs, so that a backend keeps no more: a node costs as much for each.
@@ -28,10 +28,10 @@ struct Call {
     double damping;  // 1/s, the body's
     double step;     // s
     int steps;
-    double lag;      // s, of the velocities when it begins
+    double lag;  // s, of the velocities when it begins
 
-    /// Runs every pass of every step in turn, run(const Pass&, const Turn&): the neighbours move too. Tools and
-    /// colliders stand where they are by then.
+    /// Runs every pass of every step in turn, run(const Pass&, const Turn&): the neighbours move too. Tools
+    /// and colliders stand where they are by then.
     template <class Run>
     void for_each_pass(Pass pass, Run run) const {
         for (int i = 0; i < steps; ++i) {
@@ -51,7 +51,8 @@ struct Call {
                 pass.duration = float(reached * step);
                 place_obstacles(pass, simulation, influences, (i + reached) * step);
                 const Where next = last && at != current ? current : at == between ? further : between;
-                run(pass, Turn{stage.from_sum ? sum : current, at, next, at == current, last && i + 1 == steps, impulse});
+                run(pass, Turn{stage.from_sum ? sum : current, at, next, at == current,
+                               last && i + 1 == steps, impulse});
                 at = next;
             }
         }
@@ -62,7 +63,8 @@ struct Call {
 };
 
 /// The longest step that a solver takes under these influences, s; `frequency`: the body's highest, rad/s.
-double step_under(const Influences& influences, const Body& body, const Simulation& simulation, double frequency);
+double step_under(const Influences& influences, const Body& body, const Simulation& simulation,
+                  double frequency);
 
 /// Whether influences name only nodes that the body has, and a place for each.
 bool names_nodes(const Influences& influences, const Body& body);

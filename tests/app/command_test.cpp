@@ -20,7 +20,8 @@ TEST(Command, UsageErrorsEndWithTwo) {
     for (const char* arguments :
          {"", "fly", "run", "run box --frames many", "run box --size 12", "run box --fast", "list",
           "import x.ply", "run box --frames 1 --steps 1", "run box --until-rest soon",
-          "run box --until-rest none", "run box --until-rest --frames 3"})
+          "run box --until-rest none", "run box --until-rest --frames 3", "run box --threads 0",
+          "run box --threads many", "bench sing", "bench embed --rounds 0"})
         EXPECT_EQ(palpate(arguments).status, 2) << arguments;
     EXPECT_EQ(palpate("--help").status, 0);
     EXPECT_EQ(palpate("run --help").status, 0);
@@ -40,6 +41,25 @@ TEST(Command, RunsAndReports) {
     EXPECT_EQ(outcome.status, 0) << outcome.said;
     EXPECT_NE(outcome.said.find("nodes, springs"), std::string::npos);
     EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": false"), std::string::npos);
+}
+
+TEST(Command, TheSameNodesOnAnyNumberOfThreads) {
+    Scratch scratch;
+    for (int threads : {1, 2, 3})
+        EXPECT_EQ(palpate(fmt::format("run nodule --frames 20 --threads {} --nodes {}", threads,
+                                      (scratch / fmt::format("{}.csv", threads)).string()))
+                      .status,
+                  0);
+    EXPECT_EQ(read_text(scratch / "1.csv"), read_text(scratch / "2.csv"));
+    EXPECT_EQ(read_text(scratch / "1.csv"), read_text(scratch / "3.csv"));
+}
+
+TEST(Command, TimesItself) {
+    Scratch scratch;
+    const Outcome outcome = palpate("bench cloth --rounds 1 --json " + (scratch / "b.json").string());
+    EXPECT_EQ(outcome.status, 0) << outcome.said;
+    EXPECT_NE(outcome.said.find("| 128², 1 thread |"), std::string::npos) << outcome.said;
+    EXPECT_NE(read_text(scratch / "b.json").find("links_per_second"), std::string::npos);
 }
 
 TEST(Command, RunsUntilRest) {

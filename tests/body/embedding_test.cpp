@@ -3,6 +3,7 @@
 
 #include "bench/deformations.h"
 #include "palpate/base/error.h"
+#include "palpate/base/team.h"
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/mesh/triangle.h"
@@ -249,6 +250,50 @@ TEST(Embedding, WithoutTangentsThereAreNone) {
 }
 
 // Also where the nodes' normals are no help.
+// The first few of an embedding's vertices.
+Embedding first_of(Embedding skin, std::size_t count) {
+    std::visit(
+        [&](auto& vertices) {
+            if constexpr (requires { vertices.vertices; })
+                vertices.vertices.resize(count);
+            else
+                vertices.resize(count);
+        },
+        skin.vertices);
+    skin.tangents.resize(count);
+    return skin;
+}
+
+// Vertices are carried many at once: it must not matter which are beside each other, nor who carries them.
+TEST(Embedding, EachVertexIsTheSameToTheBitBesideAnyOther) {
+    Mesh surface = organ();
+    give_tangents(surface);
+    const Body body = lattice(surface, {.nodes = 900, .material = tissue});
+    std::vector<vec3> nodes;
+    for (vec3 p : body.positions)
+        nodes.push_back(p + 0.004f * vec3(std::sin(90 * p.y), std::cos(70 * p.z), p.x));
+    const std::vector<vec3> facing = approximate_normals(body, nodes);
+    for (Mapping mode : modes_of(body)) {
+        SCOPED_TRACE(name_of(mode));
+        const Embedding skin = embed(surface, body, mode);
+        std::vector<vec3> positions, normals, some, some_normals;
+        std::vector<vec4> tangents, some_tangents;
+        deform(skin, {nodes, facing}, positions, normals, &tangents);
+        for (std::size_t count : {0, 1, 2, 3, 7, 8, 9, 15, 16, 17, 33}) {
+            deform(first_of(skin, count), {nodes, facing}, some, some_normals, &some_tangents);
+            ASSERT_EQ(some.size(), count);
+            EXPECT_TRUE(std::equal(some.begin(), some.end(), positions.begin())) << count;
+            EXPECT_TRUE(std::equal(some_normals.begin(), some_normals.end(), normals.begin())) << count;
+            EXPECT_TRUE(std::equal(some_tangents.begin(), some_tangents.end(), tangents.begin())) << count;
+        }
+        for (int members : {1, 2, 3, 5}) {
+            Team team(members);
+            deform(skin, {nodes, facing}, some, some_normals, &some_tangents, &team);
+            EXPECT_TRUE(some == positions && some_normals == normals && some_tangents == tangents) << members;
+        }
+    }
+}
+
 TEST(Embedding, CollapsedNodesGiveNoNaN) {
     for (Carrier& c : carriers()) {
         give_tangents(c.surface);

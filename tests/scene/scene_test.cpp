@@ -236,6 +236,10 @@ TEST(Scene, WindAndAir) {
                  {"twice"});
     expect_words(refusal(small + "[wind]\nvelocity = [1, 0, 0]\ndensity = -1\n"), {"negative"});
     expect_words(refusal(small + "[simulation]\nair = -1\n"), {"negative"});
+    EXPECT_EQ(parse(small).simulation.threads, 1);
+    EXPECT_EQ(parse(small + "[simulation]\nthreads = 2\n").simulation.threads, 2);
+    for (const char* threads : {"0", "-3", "100000"})
+        expect_words(refusal(small + "[simulation]\nthreads = " + threads + "\n"), {"threads", "256"});
     expect_words(refusal(small + "[wind]\npath = [[0, 1, 0, 0, 90, 0, 0]]\n"), {"row 1", "rotation"});
 }
 

@@ -79,28 +79,31 @@ struct Named {
 
 std::vector<Named> bodies() {
     const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = tissue});
-    std::vector<vec3> corners = {{0, 0, 0}, {0.03f, 0, 0}, {0, 0.03f, 0}, {0, 0, 0.03f}, {0.02f, 0.02f, 0.02f}};
+    std::vector<vec3> corners = {
+        {0, 0, 0}, {0.03f, 0, 0}, {0, 0.03f, 0}, {0, 0, 0.03f}, {0.02f, 0.02f, 0.02f}};
     std::vector<NetSpring> edges;
     for (int a = 0; a < 5; ++a)
         for (int b = 0; b < a; ++b) edges.push_back({a, b, 20});
     Body net_body = net(corners, std::vector<float>{0.01f, 0.01f, 0.01f, 0.02f, 0.0f}, edges);
     net_body.damping = 20;
     Mesh bowl = ellipsoid({0.04f, 0.04f, 0.02f}, 7);
-    return {{"box", lattice({9, 7, 8}, 0.01f, tissue)},
-            {"box with whole links", with_whole_links(lattice({8, 9, 5}, 0.01f, tissue))},
-            {"battered box", battered(lattice({10, 6, 7}, 0.01f, tissue), 1)},
-            {"box with strength", with_strength(lattice({7, 6, 5}, 0.01f, tissue), 2)},
-            {"organ", organ},
-            {"battered organ", battered(organ, 3)},
-            {"organ with strength", with_strength(organ, 4)},
-            {"turned box", turned(lattice({6, 5, 4}, 0.01f, tissue))},
-            {"volume of 2012", lattice({7, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})},
-            {"volume with strength", with_strength(lattice({5, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20}), 5)},
-            {"cloth", cloth({17, 9}, 0.01f, linen)},
-            {"turned cloth", turned(cloth({12, 11}, 0.01f, linen))},
-            {"battered cloth", battered(cloth({11, 13}, 0.01f, linen), 6)},
-            {"cloth of triangles", cloth(bowl, linen)},
-            {"net", net_body}};
+    return {
+        {"box", lattice({9, 7, 8}, 0.01f, tissue)},
+        {"box with whole links", with_whole_links(lattice({8, 9, 5}, 0.01f, tissue))},
+        {"battered box", battered(lattice({10, 6, 7}, 0.01f, tissue), 1)},
+        {"box with strength", with_strength(lattice({7, 6, 5}, 0.01f, tissue), 2)},
+        {"organ", organ},
+        {"battered organ", battered(organ, 3)},
+        {"organ with strength", with_strength(organ, 4)},
+        {"turned box", turned(lattice({6, 5, 4}, 0.01f, tissue))},
+        {"volume of 2012", lattice({7, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})},
+        {"volume with strength",
+         with_strength(lattice({5, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20}), 5)},
+        {"cloth", cloth({17, 9}, 0.01f, linen)},
+        {"turned cloth", turned(cloth({12, 11}, 0.01f, linen))},
+        {"battered cloth", battered(cloth({11, 13}, 0.01f, linen), 6)},
+        {"cloth of triangles", cloth(bowl, linen)},
+        {"net", net_body}};
 }
 
 // What acts on a body, at its worst all at once.
@@ -123,11 +126,14 @@ Acting everything(const Body& body) {
     vec3 low(1e9f), high(-1e9f);
     for (vec3 p : body.positions) low = glm::min(low, p), high = glm::max(high, p);
     const vec3 middle = 0.5f * (low + high), off = middle + vec3(0.0017f, 0.0029f, 0.0023f);
-    // No node lies where the way out is left to rounding: in the middle of something, or half way between two faces.
-    on.colliders = {{Plane{{0, 1, 0}, low.y - 0.001f}, 0.4f},
-                    {Sphere{{high.x + 0.001f, low.y, middle.z + 0.003f}, 0.012f}, 0.3f},
-                    {Box{vec3(low.x, middle.y, high.z) + vec3(0.0013f, 0.0007f, 0.0009f), {0.006f, 0.005f, 0.004f}}, 0.2f, 0.001f},
-                    {Capsule{off - vec3(0, 0.05f, 0), off - vec3(0.03f, 0.05f, 0), 0.01f}}};
+    // No node lies where the way out is left to rounding: in the middle of something, or half way between two
+    // faces.
+    on.colliders = {
+        {Plane{{0, 1, 0}, low.y - 0.001f}, 0.4f},
+        {Sphere{{high.x + 0.001f, low.y, middle.z + 0.003f}, 0.012f}, 0.3f},
+        {Box{vec3(low.x, middle.y, high.z) + vec3(0.0013f, 0.0007f, 0.0009f), {0.006f, 0.005f, 0.004f}}, 0.2f,
+         0.001f},
+        {Capsule{off - vec3(0, 0.05f, 0), off - vec3(0.03f, 0.05f, 0), 0.01f}}};
     on.motions.assign(on.colliders.size(), Motion{});
     on.motions[1].velocity = {-0.05f, 0.02f, 0};
     on.motions[1].spin = {0, 1, 0};
@@ -144,7 +150,8 @@ Acting everything(const Body& body) {
     return on;
 }
 
-Simulation simulation(const Body& body, const Acting& on, Integrator integrator, Backend backend, int threads = 1) {
+Simulation simulation(const Body& body, const Acting& on, Integrator integrator, Backend backend,
+                      int threads = 1) {
     float contact = 0, pull = 0;
     for (const Press& press : on.presses) contact += pressure_per_metre(press);
     for (const Drag& drag : on.drags) pull += drag.stiffness;
@@ -171,7 +178,8 @@ double furthest_apart(const std::vector<dvec3>& a, const std::vector<dvec3>& b) 
     return most;
 }
 
-// The same steps with both. Where contacts make much of little, the reference in double says how much that is.
+// The same steps with both. Where contacts make much of little, the reference in double says how much that
+// is.
 void expect_same(const Body& body, const Acting& on, Integrator integrator, int steps, double bound) {
     const Simulation fast = simulation(body, on, integrator, Backend::cpu),
                      slow = simulation(body, on, integrator, Backend::reference);
@@ -196,8 +204,10 @@ void expect_same(const Body& body, const Acting& on, Integrator integrator, int 
     EXPECT_LE(std::abs(of_a.largest_speed - of_exact.largest_speed), speed);
     EXPECT_LE(std::abs(of_a.largest_move - of_exact.largest_move), place);
     const double a_little = 1e-4 * seconds;  // of a tenth of a newton
-    EXPECT_LE(furthest_apart(of_a.reactions, of_exact.reactions), a_little + 10 * furthest_apart(of_b.reactions, of_exact.reactions));
-    EXPECT_LE(furthest_apart(of_a.pulls, of_exact.pulls), a_little + 10 * furthest_apart(of_b.pulls, of_exact.pulls));
+    EXPECT_LE(furthest_apart(of_a.reactions, of_exact.reactions),
+              a_little + 10 * furthest_apart(of_b.reactions, of_exact.reactions));
+    EXPECT_LE(furthest_apart(of_a.pulls, of_exact.pulls),
+              a_little + 10 * furthest_apart(of_b.pulls, of_exact.pulls));
 }
 
 class CpuIs : public ::testing::TestWithParam<Integrator> {};
@@ -223,7 +233,7 @@ TEST_P(CpuIs, TheReferenceWithAllThatCanAct) {
 
 TEST_P(CpuIs, TheReferenceOnOddSizes) {
     // Each of the sizes along each axis.
-    const ivec3 sizes[] = {{1, 33, 9}, {2, 15, 8}, {3, 16, 2},  {7, 9, 3},   {8, 1, 17}, {9, 8, 1},
+    const ivec3 sizes[] = {{1, 33, 9}, {2, 15, 8},  {3, 16, 2},  {7, 9, 3},    {8, 1, 17}, {9, 8, 1},
                            {15, 2, 7}, {16, 3, 15}, {17, 7, 16}, {33, 17, 33}, {1, 1, 1},  {1, 1, 7}};
     for (const ivec3 d : sizes) {
         SCOPED_TRACE(std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z));
@@ -231,7 +241,8 @@ TEST_P(CpuIs, TheReferenceOnOddSizes) {
         expect_same(box, everything(box), GetParam(), 10, 1e-5);
         const Body sheet = cloth({d.x, d.y}, 0.01f, linen);
         expect_same(sheet, everything(sheet), GetParam(), 10, 1e-5);
-        const Body volume = lattice({d.z, d.x, d.y}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20});
+        const Body volume =
+            lattice({d.z, d.x, d.y}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20});
         expect_same(volume, everything(volume), GetParam(), 10, 1e-5);
     }
 }
@@ -277,7 +288,8 @@ TEST_P(CpuIs, SavedAndRestoredToTheBit) {
 
 TEST_P(CpuIs, AsItWasBeforeACallThatTearsIt) {
     const Body body = lattice({9, 5, 7}, 0.01f, tissue);
-    auto solver = make_solver(body, {.backend = Backend::cpu, .integrator = GetParam(), .step = 1e-4, .force = true});
+    auto solver =
+        make_solver(body, {.backend = Backend::cpu, .integrator = GetParam(), .step = 1e-4, .force = true});
     solver->step(3e-4);
     State wild = solver->save();
     wild.velocities[100] = {5000, 0, 0};

@@ -14,7 +14,8 @@ namespace {
 const std::string folder = PALPATE_SOURCE_DIR "/palpate/solver/";
 
 std::string physics() {
-    return "#define FN\n#define ASIDE\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define Real3 "
+    return "#define FN\n#define ASIDE\n#define UNROLL\n#define LINKS pass.links\n#define Real float\n#define "
+           "Real3 "
            "vec3\n"
            "#define select(c, a, b) ((c) ? (a) : (b))\n#define any_node(c) (c)\n" +
            read_text(folder + "pass.inl") + "layout(std140, binding = 0) uniform Uniforms { Pass pass; };\n";
@@ -94,6 +95,27 @@ TEST(Shader, ThePhysicsCompilesAsTransformFeedback) {
     const auto gl = context();
     if (!gl) GTEST_SKIP() << "OpenGL is not available";
     EXPECT_NO_THROW(gl::Program({{GL_VERTEX_SHADER, "feedback", feedback_shader()}}));
+}
+
+// The mappings' text is GLSL as well.
+TEST(Shader, TheMappingsCompileAsCompute) {
+    const auto gl = context();
+    if (!gl) GTEST_SKIP() << "OpenGL is not available";
+    const std::string source =
+        "#version 430 core\nlayout(local_size_x = 64) in;\n#define FN\n#define Real float\n#define Real3 "
+        "vec3\n"
+        "#define select(c, a, b) ((c) ? (a) : (b))\n#define x_of(v) (v).x\n" +
+        read_text(PALPATE_SOURCE_DIR "/palpate/body/mapping.inl") + R"(
+        layout(std430, binding = 0) buffer Places { vec4 place[]; };
+        void main() {
+            vec3 corner[8];
+            for (int k = 0; k < 8; ++k) corner[k] = place[k].xyz;
+            Followed f = in_cell(corner, 0.1, 0.2, 0.3);
+            vec3 normal = normal_by_cofactors(f, 0, 1, 0, vec3(0, 1, 0));
+            Followed t = on_triangle(corner[0], corner[1], corner[2], clear_direction(corner[3]), 0.5);
+            place[9].xyz = f.position + upright(expand(t, 1, 0, 0), normal);
+        })";
+    EXPECT_NO_THROW(gl::Program({{GL_COMPUTE_SHADER, "mapping", source}}));
 }
 
 TEST(Shader, AMistakeInItIsFound) {

@@ -46,7 +46,8 @@ class Cpu final : public Solver {
         if (scheme_.stages.size() == 1 && stats.steps % 2 == 1) std::swap(states_[current], states_[between]);
         published_ = false;
         if (torn) {
-            for_each_field([&](float* Fields::* f) { copy(before_.*f, states_[current].*f, 0, laid_.layout().slots); });
+            for_each_field(
+                [&](float* Fields::*f) { copy(before_.*f, states_[current].*f, 0, laid_.layout().slots); });
             lag_ = lag_before;
             Stats failed;
             failed.steps = stats.steps, failed.step = stats.step, failed.diverged = true;
@@ -108,7 +109,8 @@ class Cpu final : public Solver {
     }
 
  private:
-    // With one pass a step a node's velocity can be written where it was read, unless its neighbours look at it.
+    // With one pass a step a node's velocity can be written where it was read, unless its neighbours look at
+    // it.
     bool velocities_stay() const { return scheme_.stages.size() == 1 && !(body_.link_damping > 0); }
 
     template <class Do>
@@ -119,7 +121,7 @@ class Cpu final : public Solver {
     Fields fields(bool with_velocities_of_now) {
         Fields made = states_[current];
         int number = 0;
-        for_each_field([&](float* Fields::* f) {
+        for_each_field([&](float* Fields::*f) {
             if (with_velocities_of_now && number++ >= 3) return;
             arrays_.push_back(laid_.array());
             made.*f = arrays_.back().data();
@@ -136,7 +138,8 @@ class Cpu final : public Solver {
     }
     int all_blocks() const { return int(laid_.layout().blocks.size()); }
     int slot_of_block(int block) const {
-        return block < all_blocks() ? laid_.layout().blocks[std::size_t(block)].first_slot : laid_.layout().slots;
+        return block < all_blocks() ? laid_.layout().blocks[std::size_t(block)].first_slot
+                                    : laid_.layout().slots;
     }
     static void copy(const float* from, float* to, int first, int end) {
         std::memcpy(to + first, from + first, std::size_t(end - first) * sizeof(float));
@@ -158,12 +161,13 @@ class Cpu final : public Solver {
             const int first = parts_[std::size_t(member)], end = parts_[std::size_t(member) + 1];
             Fields states[4];
             std::copy(std::begin(states_), std::end(states_), states);
-            for_each_field([&](float* Fields::* f) {
+            for_each_field([&](float* Fields::*f) {
                 copy(states[current].*f, before_.*f, slot_of_block(first), slot_of_block(end));
             });
             std::array<Bounds*, 4> moved;
             for (std::size_t where = 0; where < 4; ++where) moved[where] = moved_[where].data();
-            if (touched) kernels_.find_bounds({laid_.view(), constant, at_now, states, moved, dragged}, first, end);
+            if (touched)
+                kernels_.find_bounds({laid_.view(), constant, at_now, states, moved, dragged}, first, end);
             call.for_each_pass(constant, [&](const Pass& pass, const Turn& turn) {
                 const Sweep sweep{laid_.view(), pass, turn, states, moved, dragged};
                 if (touched && turn.impulse > 0) kernels_.give(sweep, first, end, given_.data());
@@ -200,7 +204,7 @@ class Cpu final : public Solver {
         pass.kick = float(lag_ / (1 + body_.damping * lag_));
         std::vector<Array<float>> arrays;
         Fields brought_up;
-        for_each_field([&](float* Fields::* f) {
+        for_each_field([&](float* Fields::*f) {
             arrays.emplace_back(laid_.layout(), int(arrays.size()));
             brought_up.*f = arrays.back().data();
         });
@@ -231,11 +235,13 @@ class Cpu final : public Solver {
     void for_each_moved(std::span<const Move> moves, Do act) const {
         for (const Move& move : moves)
             for (std::size_t k = 0; k < move.nodes.size(); ++k)
-                if (const auto i = std::size_t(move.nodes[k]); !(body_.inverse_mass[i] > 0)) act(i, dvec3(move.to[k]));
+                if (const auto i = std::size_t(move.nodes[k]); !(body_.inverse_mass[i] > 0))
+                    act(i, dvec3(move.to[k]));
     }
 
     void place(std::size_t i, dvec3 p) {
-        const double finest = laid_.view().finest, large = 4194304 * finest;  // as the kernel does at the end of a call
+        const double finest = laid_.view().finest,
+                     large = 4194304 * finest;  // as the kernel does at the end of a call
         dvec3 way = p - dvec3(body_.positions[i]);
         for (int k = 0; k < 3; ++k)
             if (std::abs(way[k]) < large) way[k] = finest * std::round(way[k] / finest);
@@ -251,7 +257,8 @@ class Cpu final : public Solver {
 
     void publish() const {
         const Fields &at = states_[current], &free = states_[between];  // between calls nobody needs it
-        kernels_.normals({laid_.view(), quiet_, at_now, states_, {}, {}}, 0, all_blocks(), free.x, free.y, free.z);
+        kernels_.normals({laid_.view(), quiet_, at_now, states_, {}, {}}, 0, all_blocks(), free.x, free.y,
+                         free.z);
         positions_.resize(body_.count());
         normals_.resize(body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {

@@ -1,4 +1,5 @@
-// The kernels: node.inl with as many nodes for a number as a register holds, compiled once for each instruction set.
+// The kernels: node.inl with as many nodes for a number as a register holds, compiled once for each
+// instruction set.
 #include "palpate/solver/cpu/kernel.h"
 
 #include "palpate/body/stencils.h"
@@ -14,7 +15,8 @@
 #undef FN
 #define FN HWY_INLINE
 #undef ASIDE
-#define ASIDE HWY_NOINLINE  // else what it needs is kept on the stack for it, link by link, whether it runs or not
+#define ASIDE \
+    HWY_NOINLINE  // else what it needs is kept on the stack for it, link by link, whether it runs or not
 
 HWY_BEFORE_NAMESPACE();
 namespace palpate::cpu::HWY_NAMESPACE {
@@ -50,7 +52,8 @@ struct Eyes {
     FN Pack held(int i) const {
         const hn::RebindToSigned<Lanes> d;
         const auto here = hn::Iota(d, int(id));
-        return select(hn::RebindMask(Lanes(), hn::Eq(here, hn::Set(d, sweep.dragged[std::size_t(i)]))), Pack(1.0f), Pack(0.0f));
+        return select(hn::RebindMask(Lanes(), hn::Eq(here, hn::Set(d, sweep.dragged[std::size_t(i)]))),
+                      Pack(1.0f), Pack(0.0f));
     }
     FN Pack3 corner(int i) const {
         const vec3 c = body.corners[i];
@@ -88,9 +91,10 @@ using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
 using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
 // The members of a base that depends on a template must be named.
-#define USE_EYES(P) \
-    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin, Eyes<P>::area, \
-        Eyes<P>::cover, Eyes<P>::held, Eyes<P>::corner, Eyes<P>::distance_at, Eyes<P>::uphill_at; \
+#define USE_EYES(P)                                                                                \
+    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin, \
+        Eyes<P>::area, Eyes<P>::cover, Eyes<P>::held, Eyes<P>::corner, Eyes<P>::distance_at,       \
+        Eyes<P>::uphill_at;                                                                        \
     using typename Eyes<P>::Real, typename Eyes<P>::Real3;
 
 // Nodes of a grid: their neighbours along a link are as far away for all of them.
@@ -103,8 +107,8 @@ struct GridNode : Eyes<AnyPass> {
     static constexpr int words = (Links::count + per_word - 1) / per_word;
     static constexpr bool masked = bits_per_link == 1;
 
-    // What all nodes need of a link, ready in memory where one instruction can take it: the stiffness of what is one in
-    // a word; the tension times half and three halves; and where its share is in a word.
+    // What all nodes need of a link, ready in memory where one instruction can take it: the stiffness of what
+    // is one in a word; the tension times half and three halves; and where its share is in a word.
     struct Constants {
         Pack stiffness[Links::count], tension_half[Links::count], tension_three_halves[Links::count];
         Word bits_of[Links::count];
@@ -122,14 +126,20 @@ struct GridNode : Eyes<AnyPass> {
 
     const Constants& constants;
     const int* offsets;
-    const float *x, *y, *z;  // of the first node; the compiler keeps them where one addition finds a neighbour
+    const float *x, *y,
+        *z;  // of the first node; the compiler keeps them where one addition finds a neighbour
     Word word[words];
     Pack ahead[3][2 * Links::reach + 1];  // from the node along each axis, in spacings: less where it is now
     Pack half_strength;
 
-    FN GridNode(const Sweep& s, const AnyPass& p, const Constants& c, const Fields& from, int run, std::ptrdiff_t slot)
-        : Eyes<AnyPass>{s.body, p, s, from, slot}, constants(c), offsets(s.body.offsets + run * Links::count),
-          x(from.x + slot), y(from.y + slot), z(from.z + slot) {
+    FN GridNode(const Sweep& s, const AnyPass& p, const Constants& c, const Fields& from, int run,
+                std::ptrdiff_t slot)
+        : Eyes<AnyPass>{s.body, p, s, from, slot},
+          constants(c),
+          offsets(s.body.offsets + run * Links::count),
+          x(from.x + slot),
+          y(from.y + slot),
+          z(from.z + slot) {
         const hn::RebindToUnsigned<Lanes> d;
         for (int w = 0; w < words; ++w) word[w] = hn::LoadU(d, body.words[w] + id);
         if constexpr (along_axes) {
@@ -204,13 +214,16 @@ struct TableNode : Eyes<Pass> {
         explicit Constants(const Pass&) {}
     };
 
-    FN TableNode(const Sweep& s, const Pass& p, const Constants&, const Fields& from, int, std::ptrdiff_t slot)
+    FN TableNode(const Sweep& s, const Pass& p, const Constants&, const Fields& from, int,
+                 std::ptrdiff_t slot)
         : Eyes<Pass>{s.body, p, s, from, slot} {}
 
     FN const TieFields& tie(int l) const { return body.ties[l]; }
     FN auto to(int l) const { return hn::LoadU(hn::RebindToSigned<Lanes>(), tie(l).to + id); }
-    FN static Pack3 gather(const float* x, const float* y, const float* z, hn::Vec<hn::RebindToSigned<Lanes>> i) {
-        return {hn::GatherIndex(Lanes(), x, i), hn::GatherIndex(Lanes(), y, i), hn::GatherIndex(Lanes(), z, i)};
+    FN static Pack3 gather(const float* x, const float* y, const float* z,
+                           hn::Vec<hn::RebindToSigned<Lanes>> i) {
+        return {hn::GatherIndex(Lanes(), x, i), hn::GatherIndex(Lanes(), y, i),
+                hn::GatherIndex(Lanes(), z, i)};
     }
 
     FN Pack3 toward(Pack3 p, int l) const {
@@ -248,8 +261,8 @@ FN void store_node(const Node& node, const Fields& to, std::ptrdiff_t i) {
 }
 
 template <class At, class Do>
-FN void for_each_pack(const Sweep& s, const typename At::WithPass& pass, const typename At::Constants& constants,
-                      const Fields& at, int block, Do act) {
+FN void for_each_pack(const Sweep& s, const typename At::WithPass& pass,
+                      const typename At::Constants& constants, const Fields& at, int block, Do act) {
     for (int r = s.body.blocks[block].first_run; r < s.body.blocks[block].end_run; ++r) {
         const Run run = s.body.runs[r];
         for (std::ptrdiff_t i = run.first; i < run.first + run.count; i += std::ptrdiff_t(lanes())) {
@@ -268,7 +281,8 @@ FN void for_each_pack(const Sweep& s, int first_block, int end_block, Do act) {
 
 // Forces and the motion that they bring.
 template <class At>
-FN void move(const Sweep& s, const typename At::WithPass& pass, const typename At::Constants& constants, int block) {
+FN void move(const Sweep& s, const typename At::WithPass& pass, const typename At::Constants& constants,
+             int block) {
     const Fields start = s.states[s.turn.start], at = s.states[s.turn.at], next = s.states[s.turn.next],
                  total = s.states[sum];
     for_each_pack<At>(s, pass, constants, at, block, [&](At& eyes, std::ptrdiff_t i) HWY_ATTR {
@@ -286,7 +300,8 @@ FN void move(const Sweep& s, const typename At::WithPass& pass, const typename A
 
 // Out of the obstacles. `was`: where the step began.
 template <class At>
-FN void push_out(const Sweep& s, const Pass& pass, const typename At::Constants& constants, int block, const Fields& was) {
+FN void push_out(const Sweep& s, const Pass& pass, const typename At::Constants& constants, int block,
+                 const Fields& was) {
     const Fields next = s.states[s.turn.next];
     for_each_pack<At>(s, pass, constants, next, block, [&](At& eyes, std::ptrdiff_t i) HWY_ATTR {
         const Pack3 before = load(was.x, was.y, was.z, i);
@@ -317,7 +332,8 @@ FN void finish(const Sweep& s, const Block& block, const Fields& was, Largest& l
     largest.move = std::max(largest.move, hn::GetLane(hn::MaxOfLanes(Lanes(), move.v)));
 }
 
-// Where the nodes of a block were when the step began, if the last of several passes is about to write over it.
+// Where the nodes of a block were when the step began, if the last of several passes is about to write over
+// it.
 class Kept {
  public:
     FN Kept(const Sweep& s, const Block& block) : fields(s.states[current]) {
@@ -349,7 +365,8 @@ FN Bounds bounds_of(const Fields& at, const Block& block) {
     return {{least(low.x), least(low.y), least(low.z)}, {most(high.x), most(high.y), most(high.z)}};
 }
 
-// A pass: block after block, each whole while it is in the first cache. Where nothing is near, nothing is looked for.
+// A pass: block after block, each whole while it is in the first cache. Where nothing is near, nothing is
+// looked for.
 template <class At>
 void pass(const Sweep& s, int first_block, int end_block, Largest& largest) {
     using Quiet = typename At::Quiet;
@@ -398,11 +415,13 @@ void give(const Sweep& s, int first_block, int end_block, Given* of_block) {
             const Pack3 p = load(at.x, at.y, at.z, i);
             for (int t = 0; t < s.pass.tips; ++t) {
                 const Pack3 force = eyes.tip_force(p, t);
-                if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_block[b].by_tip[std::size_t(t)]);
+                if (any_node(dot(force, force) > 0.0f))
+                    add(force, s.turn.impulse, of_block[b].by_tip[std::size_t(t)]);
             }
             for (int d = 0; d < s.pass.drags; ++d) {
                 const Pack3 force = eyes.drag_force(p, d);
-                if (any_node(dot(force, force) > 0.0f)) add(force, s.turn.impulse, of_block[b].by_drag[std::size_t(d)]);
+                if (any_node(dot(force, force) > 0.0f))
+                    add(force, s.turn.impulse, of_block[b].by_drag[std::size_t(d)]);
             }
         });
     }
@@ -462,7 +481,13 @@ bool torn_over(const Sweep& s, int first_block, int end_block) {
 }
 
 Kernels all() {
-    return {hwy::TargetName(HWY_TARGET), int(lanes()), pass_over, give_over, find_bounds, normals_over, torn_over};
+    return {hwy::TargetName(HWY_TARGET),
+            int(lanes()),
+            pass_over,
+            give_over,
+            find_bounds,
+            normals_over,
+            torn_over};
 }
 
 }  // namespace palpate::cpu::HWY_NAMESPACE

@@ -21,8 +21,8 @@ enum class Springs { lattice_whole, lattice, lattice_with_strength, cloth, turne
 
 /// A spring of a table, of every slot.
 struct TieFields {
-    const int* to;            // slot
-    const float *x, *y, *z;   // m, from node to neighbour at rest
+    const int* to;           // slot
+    const float *x, *y, *z;  // m, from node to neighbour at rest
     const float *share, *stiffness, *tension, *longest;
 };
 
@@ -31,21 +31,21 @@ struct Laid {
     Springs springs;
     const Run* runs;
     const Block* blocks;
-    const Bounds* rest_bounds;           // m, of each block's nodes
-    const float* furthest_cover;         // m, of each block's nodes
-    const int* offsets;                  // a grid's
-    std::array<vec3, 32> along;          // a grid's: each link at rest, m
-    float spacing;                       // m, where links follow the axes
-    const std::uint32_t* words[2];       // a grid's shares, one bit a link, or three of ten links each
-    const float* half_strength;          // half of each node's factor on stiffness; null: 1
-    const TieFields* ties;               // a table's
-    const float* inverse_mass;           // 1/kg
+    const Bounds* rest_bounds;              // m, of each block's nodes
+    const float* furthest_cover;            // m, of each block's nodes
+    const int* offsets;                     // a grid's
+    std::array<vec3, 32> along;             // a grid's: each link at rest, m
+    float spacing;                          // m, where links follow the axes
+    const std::uint32_t* words[2];          // a grid's shares, one bit a link, or three of ten links each
+    const float* half_strength;             // half of each node's factor on stiffness; null: 1
+    const TieFields* ties;                  // a table's
+    const float* inverse_mass;              // 1/kg
     const float *rest_x, *rest_y, *rest_z;  // m
-    const float *area, *cover;           // m², m
-    const vec3* corners;                 // of polygons
-    const DistanceField* const* fields;  // of closed meshes
-    float finest;                        // m: places at the end of a call are multiples of it, so that a double holds
-                                         // them exactly beside the place at rest
+    const float *area, *cover;              // m², m
+    const vec3* corners;                    // of polygons
+    const DistanceField* const* fields;     // of closed meshes
+    float finest;  // m: places at the end of a call are multiples of it, so that a double holds
+                   // them exactly beside the place at rest
 };
 
 /// One pass over some blocks.
@@ -53,8 +53,9 @@ struct Sweep {
     const Laid& body;
     const Pass& pass;
     const Turn& turn;
-    const Fields* states;        // as Where counts them
-    std::array<Bounds*, 4> moved;  // of each state and block: how far its nodes have come from their places at rest, m
+    const Fields* states;  // as Where counts them
+    std::array<Bounds*, 4>
+        moved;  // of each state and block: how far its nodes have come from their places at rest, m
     std::array<int, 8> dragged;  // slot of each drag
 };
 
@@ -68,7 +69,8 @@ struct Given {
     std::array<dvec3, 8> by_tip{}, by_drag{};
 };
 
-/// Whether a tip or a drag, or an obstacle, may touch nodes of a block that have come so far from their places at rest.
+/// Whether a tip or a drag, or an obstacle, may touch nodes of a block that have come so far from their
+/// places at rest.
 bool touched(const Sweep& sweep, int block, const Bounds& moved);
 bool near_obstacles(const Sweep& sweep, int block, const Bounds& moved);
 

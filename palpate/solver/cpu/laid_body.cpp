@@ -43,7 +43,8 @@ std::vector<vec3> links_at_rest(const Body& body) {
             if (to >= 0) seen.push_back(body.positions[std::size_t(to)] - body.positions[i]);
         }
         for (vec3 v : seen) sum += dvec3(v);
-        const vec3 mean = seen.empty() ? body.spacing * vec3(stencil.links[l].offset) : vec3(sum / double(seen.size()));
+        const vec3 mean =
+            seen.empty() ? body.spacing * vec3(stencil.links[l].offset) : vec3(sum / double(seen.size()));
         for (vec3 v : seen)
             if (!(glm::distance(v, mean) <= hair)) return {};
         links.push_back(mean);
@@ -53,7 +54,8 @@ std::vector<vec3> links_at_rest(const Body& body) {
 
 bool along_axes(const Body& body, const std::vector<vec3>& links) {
     for (std::size_t l = 0; l < links.size(); ++l)
-        if (!(glm::distance(links[l], body.spacing * vec3(body.stencil().links[l].offset)) <= 1e-4f * body.spacing))
+        if (!(glm::distance(links[l], body.spacing * vec3(body.stencil().links[l].offset)) <=
+              1e-4f * body.spacing))
             return false;
     return true;
 }
@@ -76,7 +78,9 @@ std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
     return {springs, std::move(links)};
 }
 
-bool in_quarters(Springs springs) { return springs == Springs::lattice || springs == Springs::lattice_with_strength; }
+bool in_quarters(Springs springs) {
+    return springs == Springs::lattice || springs == Springs::lattice_with_strength;
+}
 
 Layout layout_for(const Body& body, Springs springs, int lanes) {
     return springs == Springs::table ? Layout(body.count(), lanes) : Layout(body.stencil(), lanes);
@@ -133,8 +137,8 @@ void LaidBody::lay_grid(const Body& body) {
         }
     std::vector<float> half(body.count(), 0.5f);
     for (std::size_t i = 0; i < stencil.strength.size(); ++i) half[i] *= stencil.strength[i];
-    const bool varies = view_.springs == Springs::lattice_with_strength || view_.springs == Springs::turned_cloth ||
-                        view_.springs == Springs::volume;
+    const bool varies = view_.springs == Springs::lattice_with_strength ||
+                        view_.springs == Springs::turned_cloth || view_.springs == Springs::volume;
     if (varies) view_.half_strength = spread(half);
 }
 
@@ -165,8 +169,9 @@ void LaidBody::bound_blocks(const Body& body) {
     rest_bounds_.resize(layout_.blocks.size());
     furthest_cover_.assign(layout_.blocks.size(), 0);
     for (std::size_t i = 0; i < body.count(); ++i) {
-        const auto after = std::upper_bound(layout_.blocks.begin(), layout_.blocks.end(), layout_.slot[i],
-                                            [](int slot, const Block& block) { return slot < block.first_slot; });
+        const auto after =
+            std::upper_bound(layout_.blocks.begin(), layout_.blocks.end(), layout_.slot[i],
+                             [](int slot, const Block& block) { return slot < block.first_slot; });
         const auto block = std::size_t(after - layout_.blocks.begin()) - 1;
         rest_bounds_[block].include(body.positions[i]);
         furthest_cover_[block] = std::max(furthest_cover_[block], body.cover[i]);

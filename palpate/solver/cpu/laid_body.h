@@ -35,8 +35,8 @@ class LaidBody {
     std::vector<Array<int>> ints_;
     std::vector<Array<std::uint32_t>> words_;
     std::vector<TieFields> ties_;
-    std::vector<Bounds> rest_bounds_;      // of blocks
-    std::vector<float> furthest_cover_;    // of blocks
+    std::vector<Bounds> rest_bounds_;    // of blocks
+    std::vector<float> furthest_cover_;  // of blocks
     std::vector<vec3> corners_;
     std::vector<const DistanceField*> fields_;
     Laid view_{};

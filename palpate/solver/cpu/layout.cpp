@@ -12,9 +12,9 @@ int rounded_up(int count, int lanes) { return (count + lanes - 1) / lanes * lane
 
 // Nodes of one row with no gap as wide as a register.
 struct Segment {
-    ivec3 first;                // the place of its first node
-    int length = 0;             // to its last
-    int slot = 0;               // of its first
+    ivec3 first;                  // the place of its first node
+    int length = 0;               // to its last
+    int slot = 0;                 // of its first
     std::vector<int> nodes = {};  // that are there
 };
 
@@ -54,11 +54,13 @@ bool fills_its_box(std::span<const ivec3> places) {
 
 class Laying {
  public:
-    Laying(const Stencil& stencil, int lanes, Layout& layout) : stencil_(stencil), lanes_(lanes), layout_(layout) {
+    Laying(const Stencil& stencil, int lanes, Layout& layout)
+        : stencil_(stencil), lanes_(lanes), layout_(layout) {
         box_ = fills_its_box(stencil.at);
         choose_axis();
         give_slots();
-        if (box_) add_runs_of_box();
+        if (box_)
+            add_runs_of_box();
         else
             for (const Segment& segment : segments_) add_runs(segment);
     }
@@ -84,7 +86,8 @@ class Laying {
         for (Segment& segment : segments_) {
             segment.slot = layout_.slots;
             for (int node : segment.nodes)
-                layout_.slot[std::size_t(node)] = segment.slot + places_[std::size_t(node)].x - segment.first.x;
+                layout_.slot[std::size_t(node)] =
+                    segment.slot + places_[std::size_t(node)].x - segment.first.x;
             layout_.slots += box_ ? segment.length : rounded_up(segment.length, lanes_);
         }
         layout_.slots = rounded_up(layout_.slots, lanes_);
@@ -93,7 +96,8 @@ class Laying {
     // A box is one row: a node's neighbours are as far away as in the middle of it.
     void add_runs_of_box() {
         if (segments_.empty()) return;
-        const ivec3 size = segments_.back().first - segments_.front().first + ivec3(segments_.back().length, 1, 1);
+        const ivec3 size =
+            segments_.back().first - segments_.front().first + ivec3(segments_.back().length, 1, 1);
         std::vector<int> offsets;
         for (const Link& link : stencil_.links)
             offsets.push_back(link.offset.x + size.x * (link.offset.y + size.y * link.offset.z));
@@ -110,7 +114,8 @@ class Laying {
         auto& runs = layout_.runs;
         const bool goes_on = !runs.empty() && runs.back().first + runs.back().count == first &&
                              runs.back().count + lanes_ <= Block::most &&
-                             std::equal(offsets.begin(), offsets.end(), layout_.offsets.end() - std::ptrdiff_t(offsets.size()));
+                             std::equal(offsets.begin(), offsets.end(),
+                                        layout_.offsets.end() - std::ptrdiff_t(offsets.size()));
         if (goes_on) {
             runs.back().count += lanes_;
         } else {

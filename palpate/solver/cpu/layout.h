@@ -15,27 +15,28 @@ struct Run {
     int count;  // of slots, a multiple of the lanes
 };
 
-/// Runs that lie one after the other: a few hundred slots that stay in the first cache together. What threads share, and
-/// what is asked as a whole whether a tool or an obstacle is near.
+/// Runs that lie one after the other: a few hundred slots that stay in the first cache together. What threads
+/// share, and what is asked as a whole whether a tool or an obstacle is near.
 struct Block {
     static constexpr int most = 256;  // slots
     int first_run, end_run;
     int first_slot, end_slot;
 };
 
-/// Where the nodes of a body lie: each has a slot of its own, and along a row of the grid slots follow each other. What
-/// a run may read beside its own slots exists, but means nothing.
+/// Where the nodes of a body lie: each has a slot of its own, and along a row of the grid slots follow each
+/// other. What a run may read beside its own slots exists, but means nothing.
 struct Layout {
-    std::vector<int> slot;     // of each node
-    std::vector<Run> runs;     // at most 256 slots each
+    std::vector<int> slot;  // of each node
+    std::vector<Run> runs;  // at most 256 slots each
     std::vector<Block> blocks;
     std::vector<int> offsets;  // of each run and each link: from a slot to that of its neighbour
     int slots = 0;
     int margin = 0;  // slots before the first and behind the last that a run may read
 
-    /// A body in a grid, for registers of so many floats. A box without a hole is one long row: all its nodes have
-    /// their neighbours at the same distance. Of other shapes the rows along that axis are kept that fill their
-    /// registers best, each cut where a register or more would be empty: memory goes with the nodes, not the box.
+    /// A body in a grid, for registers of so many floats. A box without a hole is one long row: all its nodes
+    /// have their neighbours at the same distance. Of other shapes the rows along that axis are kept that
+    /// fill their registers best, each cut where a register or more would be empty: memory goes with the
+    /// nodes, not the box.
     Layout(const Stencil& stencil, int lanes);
 
     /// A body whose springs are written out: in its own order.
@@ -49,7 +50,8 @@ struct Layout {
 template <class T>
 class Array {
  public:
-    /// `number`: of the array. Each begins at another place of a page, else reading one waits for writing another.
+    /// `number`: of the array. Each begins at another place of a page, else reading one waits for writing
+    /// another.
     Array(const Layout& layout, int number) {
         const std::size_t before = std::size_t(layout.margin) + std::size_t(number * 5 % 61) * line;
         const std::size_t count = before + line + std::size_t(layout.slots + layout.margin);

@@ -47,7 +47,8 @@ bool may_touch(const Bounds& box, const Obstacle& o, const Laid& body) {
 bool touched(const Sweep& sweep, int block, const Bounds& moved) {
     const Block& of = sweep.body.blocks[block];
     for (int d = 0; d < sweep.pass.drags; ++d)
-        if (const int slot = sweep.dragged[std::size_t(d)]; slot >= of.first_slot && slot < of.end_slot) return true;
+        if (const int slot = sweep.dragged[std::size_t(d)]; slot >= of.first_slot && slot < of.end_slot)
+            return true;
     const Bounds box = place(sweep.body, block, moved);
     for (int t = 0; t < sweep.pass.tips; ++t) {
         const vec4 tip = sweep.pass.tip[t];

@@ -113,8 +113,7 @@ class Reference final : public Solver {
         for (const Drag& drag : influences.drags) world_.dragged.push_back(drag.node);
         world_.pass.wind = vec4(influences.wind, simulation_.air);
         send_off(influences.moves, seconds);
-        const Call call{scheme_,    simulation_, influences, body_.damping,
-                        stats.step, stats.steps, lag_};
+        const Call call{scheme_, simulation_, influences, body_.damping, stats.step, stats.steps, lag_};
         call.for_each_pass(world_.pass, [&](const Pass& pass, const Turn& turn) {
             count_impulses(pass, turn, stats);
             pass_over_nodes(pass, turn, stats);
@@ -224,7 +223,8 @@ class Reference final : public Solver {
             for (std::size_t k = 0; k < move.nodes.size(); ++k) {
                 const std::size_t i = std::size_t(move.nodes[k]);
                 if (body_.inverse_mass[i] > 0) continue;
-                states_[current].velocities[i] = (Real3(move.to[k]) - states_[current].positions[i]) / Real(seconds);
+                states_[current].velocities[i] =
+                    (Real3(move.to[k]) - states_[current].positions[i]) / Real(seconds);
             }
     }
 
