@@ -14,7 +14,7 @@ build_packages=(
 data_packages=(mricron-data)  # the brain and the head
 film_packages=(ffmpeg)
 fuzz_packages=(clang libclang-rt-14-dev)           # scripts/fuzz
-check_packages=(doxygen assimp-testmodels libbullet-dev)  # what palpate bench compares with; the headers' pages; odd files of every format
+check_packages=(doxygen assimp-testmodels libbullet-dev)  # the headers' pages; odd files; what palpate bench compares with
 
 need_packages() {
     local missing=() name

@@ -1,4 +1,6 @@
 // The backend cpu against the reference: the same physics, with many nodes at once and on many threads.
+#include "palpate/solver/cpu/cpu.h"
+
 #include "palpate/base/team.h"
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
@@ -12,10 +14,11 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iostream>
 #include <random>
 #include <set>
 
@@ -299,6 +302,27 @@ TEST_P(CpuIs, AsItWasBeforeACallThatTearsIt) {
     EXPECT_TRUE(stats.diverged);
     EXPECT_TRUE(solver->save().positions == before.positions);
     EXPECT_TRUE(solver->save().velocities == before.velocities);
+}
+
+// All that this machine has, and plain C++; others are chosen in the same way where they are.
+TEST(Cpu, IsTheReferenceWithEveryInstructionSet) {
+    const std::int64_t here = hwy::SupportedTargets();
+    std::set<std::string_view> tried;
+    for (std::int64_t target = 1; target > 0; target <<= 1) {
+        if (!(target & here)) continue;
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        if (!tried.insert(cpu_instructions()).second) continue;
+        SCOPED_TRACE(cpu_instructions());
+        for (const auto& [name, body] : bodies()) {
+            SCOPED_TRACE(name);
+            expect_same(body, everything(body), Integrator::verlet, 25, 1e-5);
+        }
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    EXPECT_FALSE(tried.empty());
+    for (std::string_view name : tried) std::cout << "  with " << name << "\n";
 }
 
 TEST(Cpu, TakesABodyOfNoNodes) {

@@ -275,7 +275,7 @@ class Cpu final : public Solver {
     const Simulation simulation_;
     const Scheme& scheme_;
     const double frequency_;  // rad/s, the highest of the body with nothing touching it
-    const Kernels& kernels_ = kernels();
+    const Kernels kernels_ = kernels();
     LaidBody laid_;
     const Pass quiet_;  // nothing touches or moves it
     Team team_;

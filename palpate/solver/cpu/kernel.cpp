@@ -497,9 +497,7 @@ HWY_AFTER_NAMESPACE();
 namespace palpate::cpu {
 HWY_EXPORT(all);
 
-const Kernels& kernels() {
-    static const Kernels best = HWY_DYNAMIC_DISPATCH(all)();
-    return best;
-}
+Kernels kernels() { return HWY_DYNAMIC_DISPATCH(all)(); }
+
 }  // namespace palpate::cpu
 #endif

@@ -84,6 +84,6 @@ struct Kernels {
     void (*normals)(const Sweep&, int first_block, int end_block, float* x, float* y, float* z);
     bool (*torn)(const Sweep&, int first_block, int end_block);
 };
-const Kernels& kernels();
+Kernels kernels();
 
 }  // namespace palpate::cpu
