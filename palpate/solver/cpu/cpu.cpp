@@ -38,6 +38,7 @@ class Cpu final : public Solver {
         stats.pulls.assign(influences.drags.size(), dvec3(0));
         stats.steps = steps_within(seconds, longest_step(influences));
         stats.step = seconds / stats.steps;
+        copy(states_[current], before_);
         send_off(influences.moves, seconds);
         const Call call{scheme_, simulation_, influences, body_.damping, stats.step, stats.steps, lag_};
         const double lag_before = lag_;
@@ -46,8 +47,7 @@ class Cpu final : public Solver {
         if (scheme_.stages.size() == 1 && stats.steps % 2 == 1) std::swap(states_[current], states_[between]);
         published_ = false;
         if (torn) {
-            for_each_field(
-                [&](float* Fields::*f) { copy(before_.*f, states_[current].*f, 0, laid_.layout().slots); });
+            copy(before_, states_[current]);
             lag_ = lag_before;
             Stats failed;
             failed.steps = stats.steps, failed.step = stats.step, failed.diverged = true;
@@ -137,12 +137,9 @@ class Cpu final : public Solver {
         for (std::vector<Bounds>& bounds : moved_) bounds.resize(blocks);
     }
     int all_blocks() const { return int(laid_.layout().blocks.size()); }
-    int slot_of_block(int block) const {
-        return block < all_blocks() ? laid_.layout().blocks[std::size_t(block)].first_slot
-                                    : laid_.layout().slots;
-    }
-    static void copy(const float* from, float* to, int first, int end) {
-        std::memcpy(to + first, from + first, std::size_t(end - first) * sizeof(float));
+    void copy(const Fields& from, const Fields& to) const {
+        const std::size_t bytes = std::size_t(laid_.layout().slots) * sizeof(float);
+        for_each_field([&](float* Fields::*f) { std::memcpy(to.*f, from.*f, bytes); });
     }
 
     // All passes of a call. True if the body is torn then; what it was before is in before_.
@@ -161,9 +158,6 @@ class Cpu final : public Solver {
             const int first = parts_[std::size_t(member)], end = parts_[std::size_t(member) + 1];
             Fields states[4];
             std::copy(std::begin(states_), std::end(states_), states);
-            for_each_field([&](float* Fields::*f) {
-                copy(states[current].*f, before_.*f, slot_of_block(first), slot_of_block(end));
-            });
             std::array<Bounds*, 4> moved;
             for (std::size_t where = 0; where < 4; ++where) moved[where] = moved_[where].data();
             if (touched)

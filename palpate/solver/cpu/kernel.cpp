@@ -14,9 +14,9 @@
 
 #undef FN
 #define FN HWY_INLINE
+// Not inlined: else what it needs is kept on the stack for it, link by link, whether it runs or not.
 #undef ASIDE
-#define ASIDE \
-    HWY_NOINLINE  // else what it needs is kept on the stack for it, link by link, whether it runs or not
+#define ASIDE HWY_NOINLINE
 
 HWY_BEFORE_NAMESPACE();
 namespace palpate::cpu::HWY_NAMESPACE {
@@ -126,8 +126,7 @@ struct GridNode : Eyes<AnyPass> {
 
     const Constants& constants;
     const int* offsets;
-    const float *x, *y,
-        *z;  // of the first node; the compiler keeps them where one addition finds a neighbour
+    const float *x, *y, *z;  // of the first node: from here one addition finds a neighbour
     Word word[words];
     Pack ahead[3][2 * Links::reach + 1];  // from the node along each axis, in spacings: less where it is now
     Pack half_strength;
@@ -332,8 +331,7 @@ FN void finish(const Sweep& s, const Block& block, const Fields& was, Largest& l
     largest.move = std::max(largest.move, hn::GetLane(hn::MaxOfLanes(Lanes(), move.v)));
 }
 
-// Where the nodes of a block were when the step began, if the last of several passes is about to write over
-// it.
+// Where the nodes of a block were when the step began: kept, if the last of several passes writes over it.
 class Kept {
  public:
     FN Kept(const Sweep& s, const Block& block) : fields(s.states[current]) {
