@@ -51,6 +51,8 @@ nlohmann::json described(const Timings& timings) {
 }
 
 void run_benchmarks(const Arguments& arguments) {
+    if (arguments.json.has_parent_path())
+        make_folder(arguments.json.parent_path());  // before the work, not after
     const unsigned cores = std::thread::hardware_concurrency();
     fmt::print(
         "Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
