@@ -7,10 +7,10 @@
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
 #include "palpate/scene/build.h"
+#include "tests/shapes.h"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <thread>
 
@@ -36,33 +36,6 @@ Body whole_box(int nodes) {
             }
     for (int i = 0; i < nodes; ++i) box.inverse_mass[std::size_t(i)] = 0;
     return box;
-}
-
-// A ball of `rings` times twice as many quadrilaterals, cut in two.
-Mesh ball(float radius, unsigned rings) {
-    Mesh mesh;
-    const unsigned around = 2 * rings;
-    const float pi = 3.14159265f;
-    mesh.positions.push_back({0, 0, radius});
-    for (unsigned r = 1; r < rings; ++r)
-        for (unsigned a = 0; a < around; ++a) {
-            const float polar = pi * float(r) / float(rings), turn = 2 * pi * float(a) / float(around);
-            mesh.positions.push_back(radius * vec3(std::sin(polar) * std::cos(turn),
-                                                   std::sin(polar) * std::sin(turn), std::cos(polar)));
-        }
-    mesh.positions.push_back({0, 0, -radius});
-    const unsigned last = unsigned(mesh.positions.size()) - 1;
-    auto at = [&](unsigned r, unsigned a) { return 1 + (r - 1) * around + a % around; };
-    for (unsigned a = 0; a < around; ++a) {
-        mesh.triangles.push_back({0u, at(1, a), at(1, a + 1)});
-        mesh.triangles.push_back({last, at(rings - 1, a + 1), at(rings - 1, a)});
-        for (unsigned r = 1; r + 1 < rings; ++r) {
-            mesh.triangles.push_back({at(r, a), at(r + 1, a), at(r + 1, a + 1)});
-            mesh.triangles.push_back({at(r, a), at(r + 1, a + 1), at(r, a + 1)});
-        }
-    }
-    compute_normals(mesh);
-    return mesh;
 }
 
 // The surface carried by nodes that do not move: that costs as much.
@@ -106,7 +79,7 @@ std::vector<Case> lattice_cases() {
     add("27³, shares, 2 threads", box, with(Backend::cpu, 2));
     add("64³, shares", large, with(Backend::cpu));
     add("64³, shares, 2 threads", large, with(Backend::cpu, 2));
-    add("ball of 20,000 nodes", lattice(ball(0.1f, 60), {.nodes = 20'000, .material = tissue}),
+    add("ball of 20,000 nodes", lattice(ellipsoid(vec3(0.1f), 60), {.nodes = 20'000, .material = tissue}),
         with(Backend::cpu));
     try {
         const Scene scene = read_scene("brain");
@@ -147,7 +120,7 @@ std::vector<Case> cloth_cases() {
 }
 
 std::vector<Case> embed_cases() {
-    const Mesh surface = ball(0.1f, 283);  // 159,614 vertices
+    const Mesh surface = ellipsoid(vec3(0.1f), 283);  // 159,614 vertices
     const Body body = lattice(surface, {.nodes = 20'000, .material = tissue});
     constexpr double written = 2 * sizeof(vec3);
     std::vector<Case> cases;
