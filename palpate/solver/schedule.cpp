@@ -30,6 +30,25 @@ double step_under(const Influences& influences, const Body& body, const Simulati
     return automatic_step(simulation.integrator, touched, body.damping, body.link_damping);
 }
 
+Stats about_to_do(const Influences& influences, double seconds, double longest) {
+    Stats stats;
+    stats.reactions.assign(influences.presses.size(), dvec3(0));
+    stats.pulls.assign(influences.drags.size(), dvec3(0));
+    stats.steps = steps_within(seconds, longest);
+    stats.step = seconds / stats.steps;
+    return stats;
+}
+
+Stats undone(const Stats& stats) {
+    Stats nothing;
+    nothing.steps = stats.steps;
+    nothing.step = stats.step;
+    nothing.diverged = true;
+    nothing.reactions.assign(stats.reactions.size(), dvec3(0));
+    nothing.pulls.assign(stats.pulls.size(), dvec3(0));
+    return nothing;
+}
+
 bool names_nodes(const Influences& influences, const Body& body) {
     auto known = [&](int node) { return node >= 0 && std::size_t(node) < body.count(); };
     for (const Drag& drag : influences.drags)

@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/solver/pass.h"
 #include "palpate/solver/scheme.h"
+#include "palpate/solver/solver.h"
 
 namespace palpate {
 
@@ -65,6 +66,12 @@ struct Call {
 /// The longest step that a solver takes under these influences, s; `frequency`: the body's highest, rad/s.
 double step_under(const Influences& influences, const Body& body, const Simulation& simulation,
                   double frequency);
+
+/// What a call is about to report: its steps, no longer than `longest` (s), and nothing yet of what they do.
+Stats about_to_do(const Influences& influences, double seconds, double longest);
+
+/// What it reports if the motion has blown up and all is as it was before.
+Stats undone(const Stats& stats);
 
 /// Whether influences name only nodes that the body has, and a place for each.
 bool names_nodes(const Influences& influences, const Body& body);

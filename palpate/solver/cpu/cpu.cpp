@@ -33,11 +33,7 @@ class Cpu final : public Solver {
 
     Stats step(double seconds, const Influences& influences) override {
         assert(seconds > 0 && names_nodes(influences, body_));
-        Stats stats;
-        stats.reactions.assign(influences.presses.size(), dvec3(0));
-        stats.pulls.assign(influences.drags.size(), dvec3(0));
-        stats.steps = steps_within(seconds, longest_step(influences));
-        stats.step = seconds / stats.steps;
+        Stats stats = about_to_do(influences, seconds, longest_step(influences));
         copy(states_[current], before_);
         send_off(influences.moves, seconds);
         const Call call{scheme_, simulation_, influences, body_.damping, stats.step, stats.steps, lag_};
@@ -49,10 +45,7 @@ class Cpu final : public Solver {
         if (torn) {
             copy(before_, states_[current]);
             lag_ = lag_before;
-            Stats failed;
-            failed.steps = stats.steps, failed.step = stats.step, failed.diverged = true;
-            failed.reactions.resize(stats.reactions.size()), failed.pulls.resize(stats.pulls.size());
-            return failed;
+            return undone(stats);
         }
         arrive(influences.moves);
         return stats;

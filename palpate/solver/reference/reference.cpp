@@ -103,11 +103,7 @@ class Reference final : public Solver {
 
     Stats step(double seconds, const Influences& influences) override {
         assert(seconds > 0 && names_nodes(influences, body_));
-        Stats stats;
-        stats.reactions.assign(influences.presses.size(), dvec3(0));
-        stats.pulls.assign(influences.drags.size(), dvec3(0));
-        stats.steps = steps_within(seconds, longest_step(influences));
-        stats.step = seconds / stats.steps;
+        Stats stats = about_to_do(influences, seconds, longest_step(influences));
         const State before = save();
         world_.dragged.clear();
         for (const Drag& drag : influences.drags) world_.dragged.push_back(drag.node);
@@ -122,10 +118,7 @@ class Reference final : public Solver {
         lag_ = call.lag_after();
         if (torn()) {
             restore(before);
-            stats.diverged = true;
-            std::fill(stats.reactions.begin(), stats.reactions.end(), dvec3(0));
-            std::fill(stats.pulls.begin(), stats.pulls.end(), dvec3(0));
-            return stats;
+            return undone(stats);
         }
         arrive(influences.moves);
         publish();
