@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <thread>
 
 namespace palpate::speed {
 namespace {
@@ -24,7 +23,7 @@ Simulation with(Backend backend, int threads = 1, Integrator integrator = Integr
     return {.backend = backend, .threads = threads, .integrator = integrator};
 }
 
-// Every link whole, as in 2005; one corner pinned.
+// Every link whole, as in 2005; one edge pinned.
 Body whole_box(int nodes) {
     Body box = lattice(ivec3(nodes), 0.01f, tissue);
     Stencil& stencil = std::get<Stencil>(box.springs);

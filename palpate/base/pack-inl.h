@@ -35,7 +35,7 @@ FN size_t lanes() { return hn::Lanes(Lanes()); }
 FN Pack load(const float* from) { return hn::LoadU(Lanes(), from); }
 FN void store(Pack a, float* to) { hn::StoreU(a.v, Lanes(), to); }
 
-// An estimate of 1/√a, good to `estimate_bits`: what the processor has for it.
+// An estimate of 1/√a, good to at least eleven bits: what the processor has for it.
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_SSE4
 FN Pack estimate(Pack a) { return hn::ApproximateReciprocalSqrt(a.v); }
 #elif HWY_TARGET == HWY_NEON  // eight bits only: one step of Newton's more
