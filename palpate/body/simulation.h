@@ -10,6 +10,9 @@ namespace palpate {
 enum class Backend {
     reference,  // one node after the other on one CPU core: the truth that other backends are held against
     cpu,        // as many nodes at once as the CPU's registers hold, on as many cores as it is given
+    feedback,   // on the GPU: a vertex shader and transform feedback (2012)
+    fragment,   // on the GPU: nodes laid flat in a texture, a fragment shader (2005)
+    compute,    // on the GPU: a compute shader
 };
 
 enum class Integrator {   // order, with damping of velocities; docs/integrators.md derives them
@@ -22,7 +25,11 @@ enum class Integrator {   // order, with damping of velocities; docs/integrators
 };
 
 inline std::span<const Named<Backend>> names(Backend) {
-    static constexpr Named<Backend> all[] = {{Backend::reference, "reference"}, {Backend::cpu, "cpu"}};
+    static constexpr Named<Backend> all[] = {{Backend::reference, "reference"},
+                                             {Backend::cpu, "cpu"},
+                                             {Backend::feedback, "feedback"},
+                                             {Backend::fragment, "fragment"},
+                                             {Backend::compute, "compute"}};
     return all;
 }
 
@@ -44,6 +51,9 @@ struct Simulation {
     int threads =
         1;  // of the backend cpu, at most most_threads; the motion is the same to the bit with any number
     Integrator integrator = Integrator::verlet;
+    /// A GPU need not be waited for: then Stats tell of the call before, and a motion that blew up is found a
+    /// call late.
+    bool late = false;
     double step = 0;                    // s; 0 chooses 0.7 of the stability bound
     bool force = false;                 // accept a step above the bound
     vec3 gravity = vec3(0, -9.81f, 0);  // m/s²

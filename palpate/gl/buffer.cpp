@@ -11,6 +11,15 @@ Buffer::Buffer(Bytes bytes) : fixed_(true) {
     glNamedBufferStorage(name(), room, bytes.empty() ? nullptr : bytes.data(), 0);
 }
 
+Buffer Buffer::room(std::size_t bytes) {
+    Buffer made;
+    made.fixed_ = true;
+    glNamedBufferStorage(made.name(), static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)), nullptr,
+                         GL_DYNAMIC_STORAGE_BIT);
+    glClearNamedBufferData(made.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    return made;
+}
+
 void Buffer::upload(Bytes bytes) {
     assert(!fixed_);
     glNamedBufferData(name(), static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STREAM_DRAW);

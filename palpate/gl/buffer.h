@@ -29,6 +29,9 @@ class Buffer {
     explicit Buffer(const Values& values) : Buffer(Bytes(std::as_bytes(std::span(values)))) {}
     explicit Buffer(Bytes bytes);
 
+    /// Room for shaders to write to; zeros at first.
+    static Buffer room(std::size_t bytes);
+
     /// Replaces the contents, of any length. What was drawn from the old ones stays as it was. Not for a
     /// buffer that was filled when it was made.
     template <std::ranges::contiguous_range Values>

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <string_view>
@@ -28,6 +29,19 @@ void require_libraries() {
     if (!can_load("libEGL.so.1")) throw Error("libEGL.so.1 is missing", where, remedy);
     if (!can_load("libOpenGL.so.0") && !can_load("libGL.so.1"))
         throw Error("libOpenGL.so.0 is missing", where, remedy);
+}
+
+constexpr int oldest = 45;  // direct state access; a card with 4.3's compute shaders has a driver with it
+
+// Of EGL or of another system, in whose libraries one is then.
+bool has_current_context() {
+    if (eglGetCurrentContext() != EGL_NO_CONTEXT) return true;
+    using Current = void* (*)();
+    void* glx = dlopen("libGLX.so.0", RTLD_LAZY | RTLD_NOLOAD);
+    if (!glx) return false;
+    const auto current = reinterpret_cast<Current>(dlsym(glx, "glXGetCurrentContext"));
+    dlclose(glx);
+    return current && current() != nullptr;
 }
 
 bool is_software(EGLDeviceEXT device) {
@@ -55,14 +69,16 @@ std::vector<EGLDisplay> displays() {
 }
 
 // A debug context, because only that is sure to report errors; we make few calls, so it costs nothing to
-// speak of.
-EGLContext create(EGLDisplay display) {
+// speak of. A robust one says when a card has dropped it; not every driver has that.
+EGLContext create(EGLDisplay display, bool robust) {
     eglBindAPI(EGL_OPENGL_API);
-    const EGLint attributes[][2] = {{EGL_CONTEXT_MAJOR_VERSION, 4},
-                                    {EGL_CONTEXT_MINOR_VERSION, 5},
-                                    {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT},
-                                    {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE},
-                                    {EGL_NONE, EGL_NONE}};
+    const EGLint attributes[][2] = {
+        {EGL_CONTEXT_MAJOR_VERSION, 4},
+        {EGL_CONTEXT_MINOR_VERSION, 5},
+        {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT},
+        {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE},
+        {robust ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE, EGL_LOSE_CONTEXT_ON_RESET},
+        {EGL_NONE, EGL_NONE}};
     // No config, because it would describe a surface and there is none.
     return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes[0]);
 }
@@ -86,22 +102,56 @@ std::string text(GLenum what) {
 
 // On the heap, so that the driver knows where to report errors, wherever the Context moves.
 struct Context::Parts {
+    bool adopted = false;
     // Never terminated: all contexts of the process share a display, and eglTerminate would end them all.
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
     std::string renderer, version, first_error;
     int errors = 0;
+    long reads = 0;
 
-    Parts();
+    static std::unique_ptr<Parts> make();
+    static std::unique_ptr<Parts> adopt();
+    Parts() = default;
     ~Parts();
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
 
+    void find();
     bool open(EGLDisplay candidate);
+    void name();
     void listen();
 };
 
-Context::Parts::Parts() {
+std::unique_ptr<Context::Parts> Context::Parts::adopt() {
+    auto parts = std::make_unique<Parts>();
+    parts->adopted = true;
+    // epoxy ends the program where it is asked without a context.
+    if (!can_load("libEGL.so.1") || !has_current_context())
+        throw Error("no context is current on this thread", where, "make the window's context current first");
+    parts->name();
+    if (const int version = epoxy_gl_version(); version < oldest)
+        throw Error(fmt::format("this context is of version {}.{}, and {}.{} core is needed", version / 10,
+                                version % 10, oldest / 10, oldest % 10),
+                    where, "ask the window for a newer one, or update the graphics card's driver");
+    return parts;
+}
+
+std::unique_ptr<Context::Parts> Context::Parts::make() {
+    auto parts = std::make_unique<Parts>();
+    parts->find();
+    parts->name();
+    parts->listen();
+    bind_one_pixel();
+    return parts;
+}
+
+void Context::Parts::name() {
+    renderer = text(GL_RENDERER);
+    version = text(GL_VERSION);
+}
+
+void Context::Parts::find() {
     require_libraries();
     bool any = false;
     for (EGLDisplay candidate : displays()) {
@@ -111,20 +161,18 @@ Context::Parts::Parts() {
     }
     if (!any) throw Error("no display for drawing without a window", where, remedy);
     if (context == EGL_NO_CONTEXT) throw Error("no driver has version 4.5 core", where, remedy);
-    renderer = text(GL_RENDERER);
-    version = text(GL_VERSION);
-    listen();
-    bind_one_pixel();
 }
 
 Context::Parts::~Parts() {
+    if (adopted || context == EGL_NO_CONTEXT) return;
     if (eglGetCurrentContext() == context)
         eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
 }
 
 bool Context::Parts::open(EGLDisplay candidate) {
-    EGLContext created = create(candidate);
+    EGLContext created = create(candidate, true);
+    if (created == EGL_NO_CONTEXT) created = create(candidate, false);
     if (created == EGL_NO_CONTEXT) return false;
     if (!eglMakeCurrent(candidate, EGL_NO_SURFACE, EGL_NO_SURFACE, created)) {
         eglDestroyContext(candidate, created);
@@ -147,17 +195,36 @@ void Context::Parts::listen() {
     glDebugMessageCallback(count, this);
 }
 
-Context::Context() : parts_(std::make_unique<Parts>()) {}
+Context::Context() : parts_(Parts::make()) {}
+Context::Context(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Context Context::adopt() { return Context(Parts::adopt()); }
 Context::~Context() = default;
 Context::Context(Context&&) noexcept = default;
 Context& Context::operator=(Context&&) noexcept = default;
 
 void Context::make_current() const {
-    eglBindAPI(EGL_OPENGL_API);
-    if (!eglMakeCurrent(parts_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, parts_->context))
-        throw Error("the context cannot be used from this thread", where,
-                    "let the thread that used it before end, or draw there");
+    if (!parts_->adopted) {
+        eglBindAPI(EGL_OPENGL_API);
+        if (!eglMakeCurrent(parts_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, parts_->context))
+            throw Error("the context cannot be used from this thread", where,
+                        "let the thread that used it before end, or draw there");
+    }
+    if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+        throw Error("the graphics card has dropped the context, and all that it held is lost", where,
+                    "start again; if it happens again, use smaller bodies or pictures, or update the driver");
 }
+
+void Context::read(unsigned buffer, std::span<std::byte> to) const {
+    ++parts_->reads;
+    glGetNamedBufferSubData(buffer, 0, static_cast<GLsizeiptr>(to.size()), to.data());
+}
+
+void Context::read_texture(unsigned texture, unsigned format, unsigned type, std::span<std::byte> to) const {
+    ++parts_->reads;
+    glGetTextureImage(texture, 0, format, type, static_cast<GLsizei>(to.size()), to.data());
+}
+
+long Context::reads() const { return parts_->reads; }
 
 const std::string& Context::renderer() const { return parts_->renderer; }
 const std::string& Context::version() const { return parts_->version; }

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace palpate::gl {
@@ -11,12 +13,27 @@ class Context {
  public:
     /// Becomes current on this thread. Throws Error that says which part is missing and what to install.
     Context();
+
+    /// The context of another program, or of a window: the one that is current on this thread, of EGL, GLX or
+    /// whatever else. It stays its owner's, who also makes it current before anything here is called. Throws
+    /// Error if there is none, or if it is older than 4.5 core.
+    static Context adopt();
+
     ~Context();
     Context(Context&&) noexcept;
     Context& operator=(Context&&) noexcept;
 
-    /// GL calls of this thread go here from now on.
+    /// GL calls of this thread go here from now on. Throws Error if the graphics card has dropped the
+    /// context: then all that it held is lost.
     void make_current() const;
+
+    /// Copies a buffer's first bytes, or a whole texture of such values, to the host, which waits for the
+    /// GPU. The only way to do so, and therefore counted.
+    void read(unsigned buffer, std::span<std::byte> to) const;
+    void read_texture(unsigned texture, unsigned format, unsigned type, std::span<std::byte> to) const;
+
+    /// How often the host has read from it.
+    long reads() const;
 
     const std::string& renderer() const;  // "llvmpipe (LLVM 15.0.6, 256 bits)"
     const std::string& version() const;   // "4.5 (Core Profile) Mesa 22.3.6"
@@ -28,6 +45,7 @@ class Context {
 
  private:
     struct Parts;
+    explicit Context(std::unique_ptr<Parts> parts);
     std::unique_ptr<Parts> parts_;
 };
 

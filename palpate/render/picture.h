@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/base/vectors.h"
+#include "palpate/body/nodes.h"
 #include "palpate/scene/camera.h"
 
 #include <span>
@@ -13,13 +14,15 @@ struct Look {
     float shine = 0.6f;                      // 0 as dull as chalk, 1 as wet as an eye
 };
 
-/// A mesh where it is now. The spans are read during Renderer::draw only; each has one entry a vertex of the
-/// mesh.
+/// A mesh where it is now: where its vertices are, or if it was added with an embedding, where the nodes are
+/// that they hang on. The spans are read during Renderer::draw only.
 struct Surface {
     int mesh = 0;                          // a number from Renderer::add
-    std::span<const vec3> positions = {};  // m
+    std::span<const vec3> positions = {};  // m, one a vertex of the mesh; or empty
     std::span<const vec3> normals = {};    // unit
     Look look = {};
+    Nodes nodes = {};         // where there are no positions: on the host, to be sent to the GPU,
+    GpuNodes gpu_nodes = {};  // or on the GPU already, in the renderer's context
 };
 
 /// Thin lines, such as the springs of a lattice. What a surface hides of them shines through faintly.

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 namespace palpate {
 namespace {
@@ -104,7 +105,8 @@ Extent reach(const Picture& picture, const Extent& things) {
 }  // namespace
 
 struct Renderer::Parts {
-    gl::Context context;  // first, because all the rest lives in it
+    std::optional<gl::Context> own;  // first, because all the rest lives in it
+    const gl::Context& context;
     Target target;
     ShadowMap shadow{shadow_size};
     Openness openness;
@@ -119,7 +121,7 @@ struct Renderer::Parts {
     Moving ball_shape;
     gl::Buffer wire_points, wire_lines;
 
-    explicit Parts(Offscreen size);
+    Parts(Offscreen size, const gl::Context* given);
     ~Parts() { context.make_current(); }
 
     void draw(const Picture& picture);
@@ -133,7 +135,15 @@ struct Renderer::Parts {
     void draw_ground(const Ground& one, const View& seen, const Extent& things) const;
 };
 
-Renderer::Parts::Parts(Offscreen size) : target(size.width, size.height) {
+// The members made after the context need it current.
+const gl::Context& current(std::optional<gl::Context>& own, const gl::Context* given) {
+    const gl::Context& context = given ? *given : own.emplace();
+    context.make_current();
+    return context;
+}
+
+Renderer::Parts::Parts(Offscreen size, const gl::Context* given)
+    : context(current(own, given)), target(size.width, size.height) {
     const Mesh mesh = unit_ball();
     ball_model = model(mesh, wide_open(mesh.positions.size()));
     ball_shape.positions = gl::Buffer(mesh.positions);
@@ -272,7 +282,8 @@ void Renderer::Parts::draw_ground(const Ground& one, const View& seen, const Ext
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-Renderer::Renderer(Offscreen size) : parts_(std::make_unique<Parts>(size)) {}
+Renderer::Renderer(Offscreen size, const gl::Context* context)
+    : parts_(std::make_unique<Parts>(size, context)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;

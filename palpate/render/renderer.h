@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/body/embedding.h"
 #include "palpate/mesh/image.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/render/picture.h"
@@ -17,12 +18,12 @@ struct Offscreen {
     int height = 720;
 };
 
-/// Draws pictures. Move-only. Each has an OpenGL context of its own, which every call makes current on its
-/// thread.
+/// Draws pictures. Move-only. Every call makes the renderer's context current on its thread.
 class Renderer {
  public:
-    /// Throws Error if there is no OpenGL, or if it cannot draw pictures of that size.
-    explicit Renderer(Offscreen size);
+    /// In a context that has to outlive it, such as that of a solver on the GPU, or if none is given in one
+    /// of its own. Throws Error if there is no OpenGL, or if it cannot draw pictures of that size.
+    explicit Renderer(Offscreen size, const gl::Context* context = nullptr);
     ~Renderer();
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
@@ -31,6 +32,9 @@ class Renderer {
     /// takes about a second for 100,000 triangles on a software driver. Returns the number by which
     /// Surface::mesh names it.
     int add(const Mesh& mesh);
+
+    /// The same for a mesh that hangs on nodes: its vertices are mapped where they are drawn, on the GPU.
+    int add(const Mesh& mesh, const Embedding& embedding);
 
     /// Draws one frame. Same picture, same pixels. Odd pictures are drawn as well as they can be: nothing in
     /// them, a camera that looks at its own eye, points that are not finite.

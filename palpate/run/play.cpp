@@ -163,10 +163,8 @@ Play::Acting Play::acting(double time, double seconds) {
 }
 
 bool Play::step(double seconds, const Acting& on) {
-    std::vector<State> before;
     std::vector<Stats> stats;
     for (std::size_t m = 0; m < solvers_.size(); ++m) {
-        if (m + 1 < solvers_.size()) before.push_back(solvers_[m]->save());
         stats.push_back(solvers_[m]->step(seconds, {.presses = on.presses,
                                                     .drags = on.bodies[m].drags,
                                                     .moves = on.bodies[m].moves,
@@ -175,7 +173,7 @@ bool Play::step(double seconds, const Acting& on) {
         if (!stats[m].diverged) continue;
         report_.notes.push_back(
             fmt::format("body {} diverged with steps of {:.4g} s", report_.bodies[m].name, stats[m].step));
-        for (std::size_t other = 0; other < m; ++other) solvers_[other]->restore(before[other]);
+        for (std::size_t other = 0; other < m; ++other) solvers_[other]->undo();
         return false;
     }
     stats_ = std::move(stats);

@@ -63,7 +63,8 @@ int steps_within(double seconds, double longest) {
     return int(std::clamp(steps, 1.0, 1e9));
 }
 
-std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation) {
+std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
+                                    const gl::Context* context) {
     const double frequency = highest_frequency(body);
     if (!std::isfinite(frequency))
         throw Error("masses or springs that are not finite", name_in_errors(body),
@@ -75,7 +76,12 @@ std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulati
             return make_reference<float>(body, simulation, frequency);
         case Backend::cpu:
             return make_cpu(body, simulation, frequency);
+        case Backend::feedback:
+        case Backend::fragment:
+        case Backend::compute:
+            break;
     }
+    (void)context;
     return nullptr;
 }
 

@@ -9,13 +9,18 @@
 
 namespace palpate {
 
+namespace gl {
+class Context;
+}
+
 /// What one call of Solver::step did.
 struct Stats {
     int steps = 0;
     double step = 0;           // s, the length of each
+    bool late = false;         // what follows tells of the call before this one (Simulation::late)
     double largest_speed = 0;  // m/s, of any node at the end
     double largest_move = 0;   // m, of any node in the last step
-    bool diverged = false;     // the motion blew up; the state is that from before the call
+    bool diverged = false;     // the motion blew up; the state is that from before the call that it tells of
     std::vector<dvec3>
         reactions;  // N s, one a press: the impulse that the body gave to the tip; its opposite it got
     std::vector<dvec3> pulls;  // N s, one a drag, likewise
@@ -24,7 +29,8 @@ struct Stats {
 /// How many equal steps, none longer than `longest`, fill a time; at least one.
 int steps_within(double seconds, double longest);
 
-/// Owns a body's moving state on one backend and moves it. A step never throws.
+/// Owns a body's moving state on one backend and moves it. A step never throws, unless a graphics card is
+/// lost.
 class Solver {
  public:
     virtual ~Solver() = default;
@@ -35,8 +41,14 @@ class Solver {
     /// The longest step that step() would take with these, s.
     virtual double longest_step(const Influences& influences = {}) const = 0;
 
-    /// Where the nodes are now; valid until the next step.
+    /// Puts back what was before the last call of step(); once for each call.
+    virtual void undo() = 0;
+
+    /// Where the nodes are now; valid until the next step. From a GPU they are read back, once a step.
     virtual Nodes nodes() const = 0;
+
+    /// The same where they are, on a GPU; valid until the next step. None from a backend of the CPU.
+    virtual GpuNodes gpu_nodes() const { return {}; }
 
     /// Positions and velocities at the same moment, whatever the integrator's own bookkeeping; as if tips,
     /// drags, wind and colliders were gone just then: with Verlet a node at rest on the ground shows half a
@@ -55,7 +67,10 @@ class Solver {
 };
 
 /// Throws Error if a step above the stability bound is asked for without `force`, if the integrator has none
-/// without damping, if a frame would take more than 1,000 steps, or if there are more colliders than fit.
-std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation);
+/// without damping, if a frame would take more than 1,000 steps, or if there are more colliders than fit. A
+/// backend of the GPU works in `context`, which has to outlive the solver, or if there is none in one of its
+/// own; it throws Error if there is no OpenGL.
+std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
+                                    const gl::Context* context = nullptr);
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -37,18 +38,22 @@ class Cpu final : public Solver {
         copy(states_[current], before_);
         send_off(influences.moves, seconds);
         const Call call{scheme_, simulation_, influences, body_.damping, stats.step, stats.steps, lag_};
-        const double lag_before = lag_;
-        lag_ = call.lag_after();
+        lag_before_ = std::exchange(lag_, call.lag_after());
         const bool torn = go(call, stats);
         if (scheme_.stages.size() == 1 && stats.steps % 2 == 1) std::swap(states_[current], states_[between]);
         published_ = false;
         if (torn) {
-            copy(before_, states_[current]);
-            lag_ = lag_before;
+            undo();
             return undone(stats);
         }
         arrive(influences.moves);
         return stats;
+    }
+
+    void undo() override {
+        copy(before_, states_[current]);
+        lag_ = lag_before_;
+        published_ = false;
     }
 
     double longest_step(const Influences& influences) const override {
@@ -270,6 +275,7 @@ class Cpu final : public Solver {
     Fields states_[4] = {};             // Where
     Fields before_ = {};                // as it was before the call
     double lag_ = 0;                    // s, how far the velocities are behind the positions
+    double lag_before_ = 0;             // the same before the call
     std::vector<int> pinned_;           // nodes of infinite mass
     std::vector<int> parts_;            // of the blocks, by members
     std::vector<Bounds> moved_[4];      // of each state and block

@@ -104,7 +104,7 @@ class Reference final : public Solver {
     Stats step(double seconds, const Influences& influences) override {
         assert(seconds > 0 && names_nodes(influences, body_));
         Stats stats = about_to_do(influences, seconds, longest_step(influences));
-        const State before = save();
+        before_ = save();
         world_.dragged.clear();
         for (const Drag& drag : influences.drags) world_.dragged.push_back(drag.node);
         world_.pass.wind = vec4(influences.wind, simulation_.air);
@@ -117,7 +117,7 @@ class Reference final : public Solver {
         });
         lag_ = call.lag_after();
         if (torn()) {
-            restore(before);
+            undo();
             return undone(stats);
         }
         arrive(influences.moves);
@@ -128,6 +128,8 @@ class Reference final : public Solver {
     double longest_step(const Influences& influences) const override {
         return step_under(influences, body_, simulation_, frequency_);
     }
+
+    void undo() override { restore(before_); }
 
     Nodes nodes() const override { return {positions_, normals_}; }
 
@@ -269,6 +271,7 @@ class Reference final : public Solver {
     const Pass quiet_ = world_.pass;         // nothing touches or moves it
     double lag_ = 0;                         // s, how far the velocities are behind the positions
     Moving<Real> states_[4];                 // Where
+    State before_;                           // the last call
     std::vector<vec3> positions_, normals_;  // what nodes() shows
 };
 
