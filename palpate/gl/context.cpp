@@ -214,6 +214,12 @@ void Context::make_current() const {
                     "start again; if it happens again, use smaller bodies or pictures, or update the driver");
 }
 
+void Context::make_current_or_not() const noexcept {
+    try {
+        make_current();
+    } catch (const Error&) {}
+}
+
 void Context::read(unsigned buffer, std::span<std::byte> to) const {
     ++parts_->reads;
     glGetNamedBufferSubData(buffer, 0, static_cast<GLsizeiptr>(to.size()), to.data());

@@ -26,6 +26,8 @@ class Context {
     /// GL calls of this thread go here from now on. Throws Error if the graphics card has dropped the
     /// context: then all that it held is lost.
     void make_current() const;
+    /// The same for destructors: what is lost cannot be given back.
+    void make_current_or_not() const noexcept;
 
     /// Copies a buffer's first bytes, or a whole texture of such values, to the host, which waits for the
     /// GPU. The only way to do so, and therefore counted.

@@ -62,10 +62,12 @@ std::string names(std::initializer_list<Shader> shaders) {
 
 }  // namespace
 
-Program::Program(std::initializer_list<Shader> shaders) {
+Program::Program(std::initializer_list<Shader> shaders, std::span<const char* const> captured) {
     std::vector<ShaderHandle> compiled;
     for (const Shader& shader : shaders) compiled.push_back(compile(shader));
     for (const ShaderHandle& shader : compiled) glAttachShader(name(), shader.name());
+    if (!captured.empty())
+        glTransformFeedbackVaryings(name(), GLsizei(captured.size()), captured.data(), GL_SEPARATE_ATTRIBS);
     glLinkProgram(name());
     for (const ShaderHandle& shader : compiled) glDetachShader(name(), shader.name());
     GLint linked = GL_FALSE;

@@ -25,7 +25,9 @@ class Program {
  public:
     /// Several shaders of one stage are linked into one, as C links several files: functions that one
     /// declares, another defines. Throws Error with the file's name and the driver's first complaint.
-    explicit Program(std::initializer_list<Shader> shaders);
+    /// `captured`: outputs of the vertex shader that transform feedback writes, each into a buffer of its
+    /// own.
+    explicit Program(std::initializer_list<Shader> shaders, std::span<const char* const> captured = {});
 
     void use() const { glUseProgram(handle_.name()); }
 

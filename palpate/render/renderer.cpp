@@ -122,7 +122,7 @@ struct Renderer::Parts {
     gl::Buffer wire_points, wire_lines;
 
     Parts(Offscreen size, const gl::Context* given);
-    ~Parts() { context.make_current(); }
+    ~Parts() { context.make_current_or_not(); }
 
     void draw(const Picture& picture);
     void upload(const std::vector<Surface>& surfaces);

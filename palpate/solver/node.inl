@@ -20,7 +20,26 @@
 //   corner(i)          corner i of all polygons, m
 //   distance_at(i, p), uphill_at(i, p)   field i at p: the distance, m, and which way it grows
 // These, and loading and storing nodes, are all that a backend writes itself. It may also define OWN_PULL and bring the
-// same pull(l, square) in another form, if it has the pieces of the sum at hand.
+// same pull(l, square) in another form, if it has the pieces of the sum at hand. And what it knows of a pass beforehand it
+// may define in place of these, so that a compiler leaves out what never acts:
+#ifndef FAN
+#define FAN pass.fan
+#endif
+#ifndef TIPS
+#define TIPS pass.tips
+#endif
+#ifndef DRAGS
+#define DRAGS pass.drags
+#endif
+#ifndef OBSTACLES
+#define OBSTACLES pass.obstacles
+#endif
+#ifndef DASHPOTS
+#define DASHPOTS (pass.link_damping > 0.0f)
+#endif
+#ifndef WIND
+#define WIND (pass.wind.w > 0.0f)
+#endif
 
 struct Node {
     Real3 position;      // m, from origin()
@@ -41,8 +60,8 @@ FN Real3 unit(Real3 a) { return inversesqrt(squared(a)) * a; }
 // In a sheet, which has no neighbours on either side: the normal of the triangles around the node.
 FN Real3 fan_normal(Real3 position) {
     Real3 sum = Real3(0.0f, 0.0f, 0.0f);
-    Real3 last = neighbour(pass.fan - 1) * toward(position, pass.fan - 1);
-    for (int l = 0; l < pass.fan; ++l) {
+    Real3 last = neighbour(FAN - 1) * toward(position, FAN - 1);
+    for (int l = 0; l < FAN; ++l) {
         Real3 along = neighbour(l) * toward(position, l);
         sum += cross(last, along);
         last = along;
@@ -52,7 +71,7 @@ FN Real3 fan_normal(Real3 position) {
 
 // A node's approximate normal: the sum of the unit vectors from its neighbours (2005, eq. 3).
 ASIDE Real3 outward(Real3 position) {
-    if (pass.fan > 0) return fan_normal(position);
+    if (FAN > 0) return fan_normal(position);
     Real3 sum = Real3(0.0f, 0.0f, 0.0f);
     UNROLL for (int l = 0; l < LINKS; ++l) sum -= share(l) * unit(toward(position, l));
     return sum;
@@ -103,16 +122,22 @@ ASIDE Real3 wind_force(Node node) {
     Real3 normal = outward(node.position);
     normal = min(inversesqrt(squared(normal)), Real(1.0f)) * normal;  // a short one says little
     Real through = dot(xyz(pass.wind) - node.velocity, normal);
-    if (pass.fan == 0) through = min(through, Real(0.0f));
+    if (FAN == 0) through = min(through, Real(0.0f));
     return (Real(0.5f * pass.wind.w) * area() * max(through, -through) * through) * normal;
+}
+
+FN Real3 tool_force(Real3 position) {
+    Real3 force = Real3(0.0f, 0.0f, 0.0f);
+    for (int i = 0; i < TIPS; ++i) force += tip_force(position, i);
+    for (int i = 0; i < DRAGS; ++i) force += drag_force(position, i);
+    return force;
 }
 
 FN Real3 acceleration(Node node) {
     Real3 force = spring_force(node.position);
-    if (pass.link_damping > 0.0f) force += dashpots(node);
-    for (int i = 0; i < pass.tips; ++i) force += tip_force(node.position, i);
-    for (int i = 0; i < pass.drags; ++i) force += drag_force(node.position, i);
-    if (pass.wind.w > 0.0f) force += wind_force(node);
+    if (DASHPOTS) force += dashpots(node);
+    if (TIPS + DRAGS > 0) force += tool_force(node.position);
+    if (WIND) force += wind_force(node);
     return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;
 }
 

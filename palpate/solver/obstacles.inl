@@ -98,8 +98,9 @@ ASIDE Node push_out(Node node, Real3 was, Obstacle o) {
 // of a node that rests on something would see it sink in between; they stop them in the last one, else what stopped
 // in between would not be found to have come in.
 FN Node collide(Node node, Real3 was) {
+    if (OBSTACLES == 0) return node;
     Node pushed = node;
-    for (int i = 0; i < pass.obstacles; ++i) pushed = push_out(pushed, was, pass.obstacle[i]);
+    for (int i = 0; i < OBSTACLES; ++i) pushed = push_out(pushed, was, pass.obstacle[i]);
     node.position = select(node.inverse_mass > Real(0.0f), pushed.position, node.position);
     node.velocity = select(node.inverse_mass > Real(0.0f), pushed.velocity, node.velocity);
     return node;

@@ -37,11 +37,12 @@ struct Pass {
     int   tips;
     int   drags;
     int   obstacles;
-    int   last;        // 1 in the last pass of a step, else 0
+    int   last;        // 1 in the last pass of a step, 2 in that of a call, else 0
     int   padding_1, padding_2, padding_3;
     vec4  tip[8];      // centre, radius
     vec4  tip_push[8]; // x: pressure for each metre of depth, Pa/m
     vec4  drag[8];     // where to, stiffness in N/m
+    ivec4 dragged[2];  // the node that each drag holds, as a backend of the GPU numbers it
     Obstacle obstacle[16];
     Spring spring[32];
 };

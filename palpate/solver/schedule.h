@@ -48,7 +48,7 @@ struct Call {
                 place_tools(pass, influences, (i + reached) * step);
                 const double impulse = last ? scheme.reach(stage, step, behind) : stage.part * step;
                 reached = last ? 1 : stage.drift;
-                pass.last = last;
+                pass.last = last ? (i + 1 == steps ? 2 : 1) : 0;
                 pass.duration = float(reached * step);
                 place_obstacles(pass, simulation, influences, (i + reached) * step);
                 const Where next = last && at != current ? current : at == between ? further : between;

@@ -2,6 +2,7 @@
 
 #include "palpate/base/error.h"
 #include "palpate/solver/cpu/cpu.h"
+#include "palpate/solver/gpu/gpu.h"
 #include "palpate/solver/pass.h"
 #include "palpate/solver/reference/reference.h"
 #include "palpate/solver/stability.h"
@@ -79,9 +80,8 @@ std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulati
         case Backend::feedback:
         case Backend::fragment:
         case Backend::compute:
-            break;
+            return make_gpu(body, simulation, frequency, context);
     }
-    (void)context;
     return nullptr;
 }
 

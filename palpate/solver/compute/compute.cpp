@@ -1,0 +1,49 @@
+#include "palpate/gl/program.h"
+#include "palpate/solver/gpu/pipeline.h"
+
+namespace palpate::gpu {
+namespace {
+
+const char* pass_comp =
+#include "embedded/pass.comp.h"
+    ;
+
+constexpr int group = 64;  // as in pass.comp
+
+gl::Program program(const Text& text) {
+    const std::string whole = text.physics + pass_comp;
+    return gl::Program({{GL_COMPUTE_SHADER, "pass.comp", whole}});
+}
+
+class Compute final : public Pipeline {
+ public:
+    explicit Compute(const Text& text) : program_(program(text)), sums_(text.sums), slots_(text.slots) {}
+
+    void pass(const Fields& fields) override {
+        fields.start.positions.bind(10);
+        fields.start.velocities.bind(11);
+        fields.was.bind(12);
+        if (sums_) {
+            fields.sum.positions.bind(13);
+            fields.sum.velocities.bind(14);
+        }
+        const GLuint outputs[] = {fields.next.positions.buffer(), fields.next.velocities.buffer(),
+                                  fields.next_sum.positions.buffer(), fields.next_sum.velocities.buffer()};
+        glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, sums_ ? 4 : 2, outputs);
+        program_.use();
+        glDispatchCompute(GLuint((slots_ + group - 1) / group), 1, 1);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                        GL_BUFFER_UPDATE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    }
+
+ private:
+    gl::Program program_;
+    bool sums_;
+    int slots_;
+};
+
+}  // namespace
+
+std::unique_ptr<Pipeline> make_compute(const Text& text) { return std::make_unique<Compute>(text); }
+
+}  // namespace palpate::gpu

@@ -1,0 +1,45 @@
+// closing.comp: what there is to know of the nodes after a call: where they are, for whoever draws them, and what the host
+// asks. Each invocation takes every so manieth node, so that few of them meet at the atomics.
+
+layout(local_size_x = 64) in;
+layout(binding = 8) uniform isamplerBuffer slots;  // of the nodes
+layout(binding = 9) uniform Floats before;         // their positions before the last step
+layout(std430, binding = 0) writeonly buffer Positions { vec4 shown_positions[]; };
+layout(std430, binding = 1) writeonly buffer Normals { vec4 shown_normals[]; };
+layout(std430, binding = 2) buffer Findings {
+    uint diverged, speed, move;  // the two as floats' bits, which are in order where they are not negative
+    int low[3], high[3];     // of the box around all, ordered()
+};
+uniform int count;
+
+// A float's bits as a whole number in the same order.
+int ordered(float a) {
+    int bits = floatBitsToInt(a);
+    return bits ^ (bits >> 31 & 0x7fffffff);
+}
+
+void main() {
+    int first = int(gl_GlobalInvocationID.x), stride = int(gl_NumWorkGroups.x * gl_WorkGroupSize.x);
+    if (first >= count) return;
+    uint wrong = 0u;
+    float fastest = 0, furthest = 0;
+    vec3 least = vec3(3e38), most = vec3(-3e38);
+    for (int i = first; i < count; i += stride) {
+        look_at(texelFetch(slots, i).x);
+        vec3 position = at(positions, id).xyz, velocity = at(velocities, id).xyz;
+        shown_positions[i] = vec4(position, 1);
+        shown_normals[i] = vec4(outward(position), 0);
+        if (torn(position) > 0) wrong = 1u;
+        fastest = max(fastest, length(velocity));
+        furthest = max(furthest, distance(position, at(before, id).xyz));
+        least = min(least, position);
+        most = max(most, position);
+    }
+    if (wrong > 0u) atomicOr(diverged, 1u);
+    atomicMax(speed, floatBitsToUint(fastest));
+    atomicMax(move, floatBitsToUint(furthest));
+    for (int k = 0; k < 3; ++k) {
+        atomicMin(low[k], ordered(least[k]));
+        atomicMax(high[k], ordered(most[k]));
+    }
+}

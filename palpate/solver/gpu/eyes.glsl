@@ -1,0 +1,87 @@
+// eyes.glsl: what node.inl asks of a backend, for a node in the GPU's memory. After pass.inl.
+
+layout(std140, binding = 0) uniform Uniforms { Pass pass; };
+
+layout(binding = 0) uniform Floats positions;   // m; w: 1/kg, below 0 where there is no node
+layout(binding = 1) uniform Floats velocities;  // m/s; w: number of a guide, below 0 for none
+layout(binding = 2) uniform usamplerBuffer traits;   // of a slot: two words of shares; area and cover, as floats' bits
+layout(binding = 3) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; or strengths
+layout(binding = 4) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
+layout(binding = 5) uniform samplerBuffer corners;   // of polygons
+layout(binding = 6) uniform samplerBuffer distances; // of fields, one after the other
+layout(binding = 7) uniform samplerBuffer grids;     // of fields, in pairs: origin and spacing; dims and first distance
+
+int id;       // this node's slot
+uvec4 trait;  // its own
+
+void look_at(int slot) {
+    id = slot;
+    trait = texelFetch(traits, slot);
+}
+
+// A node of infinite mass moves as its guide says, from the first pass on.
+#ifdef GUIDES
+vec3 velocity_of(vec4 kept) { return kept.w < 0 ? kept.xyz : texelFetch(guides, 2 * int(kept.w)).xyz; }
+#else
+vec3 velocity_of(vec4 kept) { return kept.xyz; }
+#endif
+
+#ifdef TABLE
+vec4 tie(int l) { return texelFetch(ties, l * SLOTS + id); }
+int other(int l) { return floatBitsToInt(tie(l).x); }
+float share(int l) { return tie(l).y; }
+float stiffness(int l) { return tie(l).z; }
+float tension(int l) { return tie(l).z * tie(l).w; }
+float longest(int l) {
+    float most = 10 * max(tie(l).w, SPACING);
+    return most * most;
+}
+float neighbour(int l) { return other(l) != id ? 1.0 : 0.0; }
+#else
+int other(int l) { return id + pass.spring[l].offset; }
+#ifdef QUARTERS
+float share(int l) { return 0.25 * float((l < 10 ? trait.x >> 3 * l : trait.y >> 3 * (l - 10)) & 7u); }
+#else
+float share(int l) { return float(trait.x >> l & 1u); }
+#endif
+#ifdef STRENGTH
+float strength(int l) { return 0.5 * (texelFetch(ties, id).x + texelFetch(ties, other(l)).x); }
+#else
+float strength(int l) { return 1; }
+#endif
+float stiffness(int l) { return strength(l) * pass.spring[l].stiffness; }
+float tension(int l) { return strength(l) * pass.spring[l].tension; }
+float longest(int l) { return pass.spring[l].longest; }
+float neighbour(int l) { return share(l) > 0 ? 1.0 : 0.0; }
+#endif
+
+vec3 toward(vec3 p, int l) { return at(positions, other(l)).xyz - p; }
+vec3 passing(vec3 v, int l) { return velocity_of(at(velocities, other(l))) - v; }
+vec3 origin() { return vec3(0); }
+float area() { return uintBitsToFloat(trait.z); }
+float cover() { return uintBitsToFloat(trait.w); }
+float held(int i) { return pass.dragged[i / 4][i % 4] == id ? 1.0 : 0.0; }
+vec3 corner(int i) { return texelFetch(corners, i).xyz; }
+
+// As DistanceField::at and uphill.
+float distance_at(int i, vec3 p) {
+    vec4 grid = texelFetch(grids, 2 * i);
+    ivec4 dims = floatBitsToInt(texelFetch(grids, 2 * i + 1));
+    vec3 way = (p - grid.xyz) / grid.w, most = vec3(dims.xyz - 1);
+    vec3 place = vec3(way.x > 0 ? min(way.x, most.x) : 0, way.y > 0 ? min(way.y, most.y) : 0, way.z > 0 ? min(way.z, most.z) : 0);
+    ivec3 cell = min(ivec3(place), dims.xyz - 2);
+    vec3 part = place - vec3(cell);
+    int first = dims.w + (cell.z * dims.y + cell.y) * dims.x + cell.x;
+    float sum = 0;
+    for (int k = 0; k < 8; ++k) {
+        ivec3 side = ivec3(k & 1, k >> 1 & 1, k >> 2);
+        vec3 w = mix(1 - part, part, vec3(side));
+        sum += w.x * w.y * w.z * texelFetch(distances, first + (side.z * dims.y + side.y) * dims.x + side.x).x;
+    }
+    return sum;
+}
+vec3 uphill_at(int i, vec3 p) {
+    vec2 h = vec2(0.5 * texelFetch(grids, 2 * i).w, 0);
+    return vec3(distance_at(i, p + h.xyy) - distance_at(i, p - h.xyy), distance_at(i, p + h.yxy) - distance_at(i, p - h.yxy),
+                distance_at(i, p + h.yyx) - distance_at(i, p - h.yyx));
+}

@@ -1,0 +1,43 @@
+#pragma once
+#include "palpate/gl/field.h"
+
+#include <memory>
+#include <string>
+
+namespace palpate::gpu {
+
+/// The moving state at one moment; eyes.glsl says what it holds.
+struct Moving {
+    gl::Field positions, velocities;
+};
+
+/// What one pass reads and writes: no field is in both.
+struct Fields {
+    const Moving& now;     // where forces are taken
+    const Moving& start;   // where the pass starts from
+    const gl::Field& was;  // positions when the step began
+    const Moving& sum;     // of the passes so far, where the integrator adds them up
+    const Moving& next;
+    const Moving& next_sum;
+};
+
+/// How a backend loads and stores the nodes of a pass. The rest of its inputs are bound by then.
+class Pipeline {
+ public:
+    virtual ~Pipeline() = default;
+    virtual void pass(const Fields& fields) = 0;
+};
+
+/// A body's physics as GLSL, for any stage: put what is special to the stage behind it.
+struct Text {
+    std::string physics;
+    bool sums = false;  // the integrator adds up its passes
+    int slots = 0;
+};
+
+// The three, each in its folder.
+std::unique_ptr<Pipeline> make_feedback(const Text& text);
+std::unique_ptr<Pipeline> make_fragment(const Text& text);
+std::unique_ptr<Pipeline> make_compute(const Text& text);
+
+}  // namespace palpate::gpu

@@ -1,0 +1,46 @@
+#include "palpate/solver/gpu/placement.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace palpate::gpu {
+namespace {
+
+constexpr std::size_t most_links = 20;       // with shares in quarters: ten in a word
+constexpr std::size_t slots_for_a_node = 6;  // beyond, springs that are written out take less memory and time
+
+struct Box {
+    ivec3 low = ivec3(0), dims = ivec3(0);
+};
+Box box_of(const Stencil& stencil) {
+    if (stencil.at.empty()) return {};
+    ivec3 low = stencil.at[0], high = low;
+    for (ivec3 p : stencil.at) low = glm::min(low, p), high = glm::max(high, p);
+    return {low, high - low + 1};
+}
+
+}  // namespace
+
+Placement::Placement(const Body& body) {
+    const auto* stencil = std::get_if<Stencil>(&body.springs);
+    const Box box = stencil ? box_of(*stencil) : Box{};
+    const double volume = double(box.dims.x) * box.dims.y * box.dims.z;
+    grid = stencil && body.count() > 0 && volume <= double(slots_for_a_node * body.count()) &&
+           !(stencil->in_quarters() && stencil->links.size() > most_links);
+    if (!grid) {
+        slots = int(body.count());
+        slot.resize(body.count());
+        std::iota(slot.begin(), slot.end(), 0);
+        return;
+    }
+    auto number = [&](ivec3 p) { return (p.z * box.dims.y + p.y) * box.dims.x + p.x; };
+    int room = 0;
+    for (const Link& link : stencil->links) {
+        offsets.push_back(number(link.offset));
+        room = std::max(room, std::abs(offsets.back()));
+    }
+    for (ivec3 p : stencil->at) slot.push_back(room + number(p - box.low));
+    slots = room + int(volume) + room;
+}
+
+}  // namespace palpate::gpu

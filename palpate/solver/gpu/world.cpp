@@ -1,0 +1,204 @@
+#include "palpate/solver/gpu/world.h"
+
+#include "palpate/solver/scheme.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstring>
+
+namespace palpate::gpu {
+namespace {
+
+const char* pass_inl =
+#include "embedded/pass.inl.h"
+    ;
+const char* node_inl =
+#include "embedded/node.inl.h"
+    ;
+const char* obstacles_inl =
+#include "embedded/obstacles.inl.h"
+    ;
+const char* prelude_glsl =
+#include "embedded/prelude.glsl.h"
+    ;
+const char* eyes_glsl =
+#include "embedded/eyes.glsl.h"
+    ;
+const char* turn_glsl =
+#include "embedded/turn.glsl.h"
+    ;
+
+template <class Value>
+gl::Field field(GLenum format, const std::vector<Value>& values) {
+    return gl::Field(format, sizeof(Value), values.size(), 0, std::as_bytes(std::span(values)));
+}
+
+std::vector<uvec4> traits_of(const Body& body, const Placement& placement) {
+    std::vector<uvec4> traits(std::size_t(placement.slots), uvec4(0));
+    const auto* stencil = placement.grid ? &body.stencil() : nullptr;
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        uvec4& trait = traits[std::size_t(placement.slot[i])];
+        trait.z = std::bit_cast<unsigned>(body.area[i]);
+        trait.w = std::bit_cast<unsigned>(body.cover[i]);
+        for (std::size_t l = 0; stencil && l < stencil->links.size(); ++l) {
+            const auto quarters = unsigned(stencil->quarters(i, l));
+            if (stencil->in_quarters())
+                trait[l < 10 ? 0 : 1] |= quarters << 3 * (l % 10);
+            else
+                trait.x |= quarters / 4 << l;
+        }
+    }
+    return traits;
+}
+
+// Springs written out, those of each link together, so that neighbouring nodes read side by side.
+gl::Field ties_of(const Body& body, const Placement& placement) {
+    if (placement.grid) {
+        std::vector<float> strength(std::size_t(placement.slots), 1.0f);
+        const auto& given = body.stencil().strength;
+        for (std::size_t i = 0; i < given.size(); ++i) strength[std::size_t(placement.slot[i])] = given[i];
+        return field(GL_R32F, given.empty() ? std::vector<float>() : strength);
+    }
+    const Table springs = table(body);
+    std::vector<vec4> ties;
+    for (int l = 0; l < springs.width; ++l)
+        for (std::size_t i = 0; i < body.count(); ++i) {
+            const Tie& tie = springs.of(i)[std::size_t(l)];
+            const int to = tie.to < 0 ? int(i) : tie.to;  // where there is none it pulls at nothing
+            ties.emplace_back(std::bit_cast<float>(to), tie.share, tie.stiffness, tie.rest);
+        }
+    return field(GL_RGBA32F, ties);
+}
+
+std::vector<vec4> with_room(const std::vector<vec3>& vectors) {
+    std::vector<vec4> list;
+    for (vec3 v : vectors) list.emplace_back(v, 0);
+    return list;
+}
+
+std::vector<float> all_distances(const Simulation& simulation) {
+    std::vector<float> all;
+    for (const DistanceField* one : distance_fields(simulation))
+        all.insert(all.end(), one->distance.begin(), one->distance.end());
+    return all;
+}
+
+std::vector<vec4> grids_of(const Simulation& simulation) {
+    std::vector<vec4> grids;
+    int first = 0;
+    for (const DistanceField* one : distance_fields(simulation)) {
+        grids.emplace_back(one->origin, one->spacing);
+        grids.push_back(std::bit_cast<vec4>(ivec4(one->dims, first)));
+        first += int(one->distance.size());
+    }
+    return grids;
+}
+
+std::vector<int> number_guides(const Body& body) {
+    std::vector<int> numbers;
+    int next = 0;
+    for (float inverse : body.inverse_mass) numbers.push_back(inverse > 0 ? -1 : next++);
+    return numbers;
+}
+
+std::size_t count_guides(const Body& body) {
+    return std::size_t(
+        std::count_if(body.inverse_mass.begin(), body.inverse_mass.end(), [](float m) { return !(m > 0); }));
+}
+
+}  // namespace
+
+Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
+             bool touched) {
+    const bool sums = scheme(simulation.integrator).stages.front().part > 0;
+    std::string text = "#version 450 core\n";
+    auto define = [&](bool holds, const std::string& what) {
+        if (holds) text += "#define " + what + "\n";
+    };
+    const auto* stencil = placement.grid ? &body.stencil() : nullptr;
+    define(true, fmt::format("LINKS {}", stencil ? int(stencil->links.size()) : table(body).width));
+    define(!stencil, "TABLE");
+    define(stencil && stencil->in_quarters(), "QUARTERS");
+    define(stencil && !stencil->strength.empty(), "STRENGTH");
+    define(true, fmt::format("SLOTS {}", placement.slots));
+    define(true, fmt::format("SPACING {:e}", body.spacing));
+    define(sums, "SUMS");
+    define(count_guides(body) > 0, "GUIDES");
+    define(true, fmt::format("FAN {}", body.fan));
+    define(!(body.link_damping > 0), "DASHPOTS false");
+    define(!(simulation.air > 0), "WIND false");
+    define(simulation.colliders.empty(), "OBSTACLES 0");
+    define(!touched, "TIPS 0");
+    define(!touched, "DRAGS 0");
+    define(width > 0, fmt::format("FLAT {}", width));
+    for (const char* part : {prelude_glsl, pass_inl, eyes_glsl, node_inl, obstacles_inl, turn_glsl})
+        text += part;
+    return {std::move(text), sums, placement.slots};
+}
+
+World::World(const Body& body, const Simulation& simulation, const Placement& placement)
+    : traits_(field(GL_RGBA32UI, traits_of(body, placement))),
+      ties_(ties_of(body, placement)),
+      slots_(field(GL_R32I, placement.slot)),
+      corners_(field(GL_RGBA32F, with_room(polygon_corners(simulation)))),
+      distances_(field(GL_R32F, all_distances(simulation))),
+      grids_(field(GL_RGBA32F, grids_of(simulation))),
+      guide_(number_guides(body)),
+      guided_(count_guides(body)),
+      guides_(GL_RGBA32F, sizeof(vec4), 2 * guided_.size(), 0),
+      uniforms_(gl::Buffer::room(sizeof(Pass))) {}
+
+void World::bind() const {
+    const gl::Field* fields[] = {&traits_, &ties_, &guides_, &corners_, &distances_, &grids_, &slots_};
+    GLuint unit = 2;  // after positions and velocities
+    for (const gl::Field* one : fields) one->bind(unit++);
+    for (unit = 0; unit < 15; ++unit) glBindSampler(unit, 0);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_.name());
+}
+
+void World::upload(const Pass& pass) const {
+    // Mostly only the numbers at the front have changed, or nothing.
+    constexpr std::size_t front = offsetof(Pass, tip);
+    const auto* bytes = reinterpret_cast<const std::byte*>(&pass);
+    const auto* known = pass_ ? reinterpret_cast<const std::byte*>(&*pass_) : nullptr;
+    if (!known || std::memcmp(bytes + front, known + front, sizeof(Pass) - front) != 0)
+        glNamedBufferSubData(uniforms_.name(), 0, sizeof(Pass), bytes);
+    else if (std::memcmp(bytes, known, front) != 0)
+        glNamedBufferSubData(uniforms_.name(), 0, front, bytes);
+    pass_ = pass;
+}
+
+template <class Do>
+void World::for_each_guided(std::span<const Move> moves, Do act) const {
+    for (const Move& move : moves)
+        for (std::size_t k = 0; k < move.nodes.size(); ++k)
+            if (const int guide = guide_[std::size_t(move.nodes[k])]; guide >= 0)
+                act(std::size_t(guide), move.to[k]);
+}
+
+void World::guide(std::span<const Move> moves, double seconds) {
+    std::vector<vec4> guides(2 * guided_.size(), vec4(0));
+    for_each_guided(moves, [&](std::size_t guide, vec3 to) {
+        guides[2 * guide] = vec4((to - guided_[guide]) / float(seconds), 0);
+        guides[2 * guide + 1] = vec4(to, 1);
+    });
+    guides_.put(std::as_bytes(std::span(guides)));
+}
+
+void World::arrive(std::span<const Move> moves) {
+    for_each_guided(moves, [&](std::size_t guide, vec3 to) { guided_[guide] = to; });
+}
+
+void World::stand(const State& state) {
+    for (std::size_t i = 0; i < guide_.size(); ++i)
+        if (guide_[i] >= 0) guided_[std::size_t(guide_[i])] = vec3(state.positions[i]);
+}
+
+std::size_t World::bytes() const {
+    return traits_.bytes() + ties_.bytes() + slots_.bytes() + guides_.bytes();
+}
+
+}  // namespace palpate::gpu

@@ -1,0 +1,57 @@
+#pragma once
+#include "palpate/gl/field.h"
+#include "palpate/solver/gpu/pipeline.h"
+#include "palpate/solver/gpu/placement.h"
+#include "palpate/solver/pass.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace palpate::gpu {
+
+/// The physics of a body as GLSL, with or without tools. What cannot act is left out: a software driver runs
+/// both sides of every branch.
+Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
+             bool touched);
+
+/// All that nodes look at besides the moving state: what they are made of, the pass, guides and obstacles.
+class World {
+ public:
+    World(const Body& body, const Simulation& simulation, const Placement& placement);
+
+    /// Binds it for the shaders of this body; their samplers, and the block of the pass.
+    void bind() const;
+
+    /// Makes it the pass of what runs next.
+    void upload(const Pass& pass) const;
+
+    // Nodes of infinite mass go where their guides lead them.
+
+    /// The number of a node's guide, or -1.
+    int guide_of(std::size_t node) const { return guide_[node]; }
+    /// Sends them off: in `seconds` to where the moves say, or nowhere.
+    void guide(std::span<const Move> moves, double seconds);
+    /// They have got there.
+    void arrive(std::span<const Move> moves);
+    /// Where they are, m.
+    const std::vector<vec3>& guided() const { return guided_; }
+    void stand(const std::vector<vec3>& guided) { guided_ = guided; }
+    void stand(const State& state);
+
+    std::size_t bytes() const;
+
+ private:
+    template <class Do>
+    void for_each_guided(std::span<const Move> moves, Do act) const;
+
+    gl::Field traits_, ties_, slots_;
+    gl::Field corners_, distances_, grids_;
+    std::vector<int> guide_;    // of each node
+    std::vector<vec3> guided_;  // where each guide's node is
+    gl::Field guides_;
+    gl::Buffer uniforms_;
+    mutable std::optional<Pass> pass_;  // in it
+};
+
+}  // namespace palpate::gpu
