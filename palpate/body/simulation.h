@@ -15,6 +15,9 @@ enum class Backend {
     compute,    // on the GPU: a compute shader
 };
 
+/// Whether a backend needs OpenGL.
+constexpr bool on_gpu(Backend backend) { return backend >= Backend::feedback; }
+
 enum class Integrator {   // order, with damping of velocities; docs/integrators.md derives them
     explicit_euler,       // 1; stable only with damping
     semi_implicit_euler,  // 1, symplectic; called "implicit Euler" in the 2012 paper

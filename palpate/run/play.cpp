@@ -71,7 +71,7 @@ Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double secon
     return motion;
 }
 
-Play::Play(const Scene& scene, const Models& made, Report& report)
+Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context)
     : scene_(scene),
       made_(made),
       report_(report),
@@ -81,7 +81,7 @@ Play::Play(const Scene& scene, const Models& made, Report& report)
     Simulation simulation = made.simulation;
     simulation.frame = frame_seconds;
     for (const Model& model : made.models) {
-        solvers_.push_back(make_solver(model.body, simulation));
+        solvers_.push_back(make_solver(model.body, simulation, context));
         report.bodies.push_back(describe(model));
         for (const ToolRecipe& tool : scene.tools)
             if (tool.kind == ToolKind::press && tool.radius < 0.7f * model.body.spacing)
@@ -98,7 +98,12 @@ Play::Play(const Scene& scene, const Models& made, Report& report)
         report.tools.emplace_back().name = tool.name;
     }
     for (std::size_t m = 0; m < skins_.size(); ++m) skins_[m].triangles = &made.models[m].surface.triangles;
-    map();
+    if (!on_gpu(simulation.backend)) map();
+}
+
+const std::vector<Skin>& Play::skins() const {
+    if (!mapped_) map();
+    return skins_;
 }
 
 int Play::steps_per_frame() const {
@@ -128,7 +133,8 @@ bool Play::advance(double time, double seconds) {
         Timed timed(report_.seconds.simulate);
         if (!step(seconds, on)) return false;
     }
-    map();
+    mapped_ = false;
+    if (!on_gpu(made_.simulation.backend)) map();
     record(on, time + seconds, seconds);
     return true;
 }
@@ -138,9 +144,8 @@ Play::Acting Play::acting(double time, double seconds) {
     on.bodies.resize(solvers_.size());
     for (std::size_t t = 0; t < handles_.size(); ++t) {
         if (auto* tip = std::get_if<Tip>(&handles_[t])) {
-            const auto press = tip->press(time, seconds, skins_);
-            if (!press) continue;
-            on.presses.push_back(*press);
+            if (!tip->is_there(time)) continue;
+            on.presses.push_back(tip->press(time, seconds, skins()));
             on.tool_of_press.push_back(t);
         } else {
             Grip& grip = std::get<Grip>(handles_[t]);
@@ -180,11 +185,12 @@ bool Play::step(double seconds, const Acting& on) {
     return true;
 }
 
-void Play::map() {
+void Play::map() const {
     Timed timed(report_.seconds.map);
     for (std::size_t m = 0; m < skins_.size(); ++m)
         deform(made_.models[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals,
                nullptr, &team_);
+    mapped_ = true;
 }
 
 void Play::record(const Acting& on, double time, double seconds) {
@@ -205,19 +211,22 @@ void Play::record(const Acting& on, double time, double seconds) {
         body.steps += stats.steps;
         if (body.step == 0 || stats.step < body.step) body.step = stats.step;
         body.largest_speed = std::max(body.largest_speed, stats.largest_speed);
-        body.inverted_cells =
-            std::max(body.inverted_cells, inverted_cells(made_.models[m].body, nodes(m).positions));
     }
     for (std::size_t t = 0; t < handles_.size(); ++t) {
         const auto* tip = std::get_if<Tip>(&handles_[t]);
         const double force = glm::length(impulses[t]) / seconds;
-        const double depth = tip && tools_[t] ? tip->indentation(tools_[t]->centre, skins_) : 0;
+        const double depth = tip && tools_[t] ? tip->indentation(tools_[t]->centre, skins()) : 0;
         Report::Tool& tool = report_.tools[t];
         tool.largest_force = std::max(tool.largest_force, force);
         tool.deepest_indentation = std::max(tool.deepest_indentation, depth);
         tool.time.push_back(time);
         tool.force.push_back(force);
         tool.indentation.push_back(depth);
+    }
+    // From a GPU nodes are not fetched for this alone.
+    for (std::size_t m = 0; mapped_ && m < solvers_.size(); ++m) {
+        std::size_t& worst = report_.bodies[m].inverted_cells;
+        worst = std::max(worst, inverted_cells(made_.models[m].body, nodes(m).positions));
     }
 }
 

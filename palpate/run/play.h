@@ -18,10 +18,11 @@ namespace palpate {
 /// into the report.
 class Play {
  public:
-    Play(const Scene& scene, const Models& made, Report& report);
+    /// On a GPU, in that context.
+    Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context = nullptr);
 
-    /// Simulates and maps `seconds` from `time` on. False if a body diverged: then all are as they were
-    /// before.
+    /// Simulates and maps `seconds` from `time` on; what moves on a GPU is mapped when somebody asks for it.
+    /// False if a body diverged: then all are as they were before.
     bool advance(double time, double seconds);
 
     /// Steps that the busiest body takes for a frame of 1/60 s.
@@ -35,8 +36,9 @@ class Play {
 
     // ---- what there is to see ----
 
-    const std::vector<Skin>& skins() const { return skins_; }
+    const std::vector<Skin>& skins() const;
     Nodes nodes(std::size_t body) const { return solvers_[body]->nodes(); }
+    GpuNodes gpu_nodes(std::size_t body) const { return solvers_[body]->gpu_nodes(); }
 
     /// Where a tool is, if it is there, and the node that it drags, if it does.
     struct Tool {
@@ -52,7 +54,7 @@ class Play {
     struct Acting;  // all that acts during a frame
     Acting acting(double time, double seconds);
     bool step(double seconds, const Acting& on);
-    void map();
+    void map() const;
     void record(const Acting& on, double time, double seconds);
 
     const Scene& scene_;
@@ -60,8 +62,9 @@ class Play {
     Report& report_;
     std::vector<std::unique_ptr<Solver>> solvers_;
     std::vector<Stats> stats_;
-    Team team_;  // that carries the skins
-    std::vector<Skin> skins_;
+    mutable Team team_;  // that carries the skins
+    mutable std::vector<Skin> skins_;
+    mutable bool mapped_ = false;                   // they are where the nodes are
     std::vector<std::variant<Tip, Grip>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
 };

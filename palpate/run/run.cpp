@@ -3,6 +3,7 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
+#include "palpate/gl/context.h"
 #include "palpate/mesh/sequence.h"
 #include "palpate/mesh/write.h"
 #include "palpate/run/play.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace palpate {
 namespace {
@@ -174,10 +176,13 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
 
     const Models made = build(scene, progress);
     report.notes = made.notes;
-    Play play(scene, made, report);
+    std::optional<gl::Context> context;  // in which a GPU moves the bodies, and pictures are drawn
+    if (on_gpu(made.simulation.backend)) report.renderer = context.emplace().renderer();
+    const gl::Context* const shared = context ? &*context : nullptr;
+    Play play(scene, made, report, shared);
     std::unique_ptr<Show> show;
     if (!settings.video.empty() || !settings.images.empty()) {
-        show = std::make_unique<Show>(scene, made, settings);
+        show = std::make_unique<Show>(scene, made, settings, shared);
         report.renderer = show->renderer();
     }
     const double duration = longest(scene, settings, play);

@@ -23,9 +23,11 @@ vec3 middle(const Model& model) {
 
 }  // namespace
 
-Show::Show(const Scene& scene, const Models& made, const RunSettings& settings)
-    : scene_(scene), made_(made), settings_(settings), renderer_({settings.width, settings.height}) {
-    for (const Model& model : made.models) meshes_.push_back(renderer_.add(model.surface));
+Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, const gl::Context* context)
+    : scene_(scene), made_(made), settings_(settings), renderer_({settings.width, settings.height}, context) {
+    for (const Model& model : made.models)
+        meshes_.push_back(mapped_where_drawn() ? renderer_.add(model.surface, model.embedding)
+                                               : renderer_.add(model.surface));
     for (const Collider& collider : made.simulation.colliders) {
         Shape& shape = shapes_.emplace_back();
         shape.rest = shape.now = shape_mesh(collider);
@@ -80,8 +82,15 @@ Picture Show::picture(double time, const Play& play) {
     picture.light = scene_.light;
     for (std::size_t m = 0; m < made_.models.size(); ++m) {
         const BodyRecipe& recipe = scene_.bodies[m];
-        const Skin& skin = play.skins()[m];
-        picture.surfaces.push_back({meshes_[m], skin.positions, skin.normals, {recipe.colour, recipe.shine}});
+        Surface& surface = picture.surfaces.emplace_back();
+        surface.mesh = meshes_[m];
+        surface.look = {recipe.colour, recipe.shine};
+        if (mapped_where_drawn()) {
+            surface.gpu_nodes = play.gpu_nodes(m);
+        } else {
+            surface.positions = play.skins()[m].positions;
+            surface.normals = play.skins()[m].normals;
+        }
         if (settings_.lattice) picture.wires.push_back({play.nodes(m).positions, springs_[m], {}});
     }
     add_tools(play, picture);

@@ -13,7 +13,9 @@ namespace palpate {
 /// Draws a scene as it moves, into a film and single pictures.
 class Show {
  public:
-    Show(const Scene& scene, const Models& made, const RunSettings& settings);
+    /// In the context in which a GPU moves the bodies, if one does.
+    Show(const Scene& scene, const Models& made, const RunSettings& settings,
+         const gl::Context* context = nullptr);
 
     /// The OpenGL driver.
     const std::string& renderer() const;
@@ -26,6 +28,8 @@ class Show {
     void finish();
 
  private:
+    // Where a GPU moves the nodes, surfaces follow them there.
+    bool mapped_where_drawn() const { return on_gpu(made_.simulation.backend); }
     vec3 looked_at() const;
     Picture picture(double time, const Play& play);
     void add_tools(const Play& play, Picture& picture);

@@ -55,8 +55,7 @@ std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std
     return std::nullopt;
 }
 
-std::optional<Press> Tip::press(double time, double frame, const std::vector<Skin>& skins) {
-    if (!within(recipe_.path, time)) return std::nullopt;
+Press Tip::press(double time, double frame, const std::vector<Skin>& skins) {
     if (untouched_.empty()) {
         untouched_ = skins;
         if (recipe_.from) {
@@ -70,7 +69,7 @@ std::optional<Press> Tip::press(double time, double frame, const std::vector<Ski
         }
     }
     const vec3 here = centre(time), there = centre(time + frame);
-    return Press{here, (there - here) / float(frame), recipe_.radius, recipe_.stiffness};
+    return {here, (there - here) / float(frame), recipe_.radius, recipe_.stiffness};
 }
 
 double Tip::indentation(vec3 centre, const std::vector<Skin>& skins) const {

@@ -18,9 +18,12 @@ class Tip {
  public:
     explicit Tip(const ToolRecipe& recipe) : recipe_(recipe) {}
 
-    /// The press for the frame from `time` on, or none while the tip is away. At the path's first time the
+    /// Whether it is there at a time, and not yet or no longer away.
+    bool is_there(double time) const { return within(recipe_.path, time); }
+
+    /// The press for the frame from `time` on, at which it is there. At the path's first time the
     /// tip is brought to the surface it shall touch, and the surfaces are remembered as untouched.
-    std::optional<Press> press(double time, double frame, const std::vector<Skin>& skins);
+    Press press(double time, double frame, const std::vector<Skin>& skins);
 
     /// How far a surface under the tip is pushed in, m: the furthest that a vertex within 1.2 radii of the
     /// tip's centre lies behind its untouched place, measured along the untouched normal.

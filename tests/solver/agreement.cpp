@@ -1,0 +1,184 @@
+#include "tests/solver/agreement.h"
+
+#include "palpate/body/select.h"
+#include "palpate/solver/reference/reference.h"
+#include "palpate/solver/stability.h"
+#include "tests/shapes.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace palpate {
+namespace {
+
+// A body with many odd things: nodes pinned and of other masses, and a scattering of holes in its links.
+Body battered(Body body, unsigned seed) {
+    std::mt19937 random(seed);
+    auto chance = [&](double p) { return std::bernoulli_distribution(p)(random); };
+    for (float& inverse : body.inverse_mass) inverse *= chance(0.1) ? 0.0f : chance(0.3) ? 0.5f : 1.0f;
+    if (auto* stencil = std::get_if<Stencil>(&body.springs)) {
+        const Table springs = table(body);
+        for (std::size_t i = 0; i < body.count(); ++i)
+            for (std::size_t l = 0; l < stencil->links.size(); ++l)
+                if (const int to = springs.of(i)[l].to; to > int(i) && chance(0.05)) {
+                    const std::size_t width = stencil->in_quarters() ? 3 : 1;
+                    const std::uint64_t link = width == 3 ? 7 : 1;
+                    for (std::size_t k = 0; k < stencil->links.size(); ++k) {  // the link back
+                        if (stencil->links[k].offset != -stencil->links[l].offset) continue;
+                        stencil->shares[i] &= ~(link << width * l);
+                        stencil->shares[std::size_t(to)] &= ~(link << width * k);
+                    }
+                }
+    }
+    return body;
+}
+
+Body with_strength(Body body, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<float> factors(body.count());
+    for (float& f : factors) f = std::uniform_real_distribution<float>(0.3f, 4.0f)(random);
+    strengthen(body, factors);
+    return body;
+}
+
+Body with_whole_links(Body body) {
+    Stencil& stencil = std::get<Stencil>(body.springs);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (std::size_t l = 0; l < stencil.links.size(); ++l)
+            if (stencil.quarters(i, l) > 0) {
+                stencil.shares[i] &= ~(std::uint64_t(7) << 3 * l);
+                stencil.shares[i] |= std::uint64_t(4) << 3 * l;
+            }
+    return body;
+}
+
+Body turned(Body body) {
+    const mat3 turn = mat3(glm::rotate(mat4(1), 0.7f, glm::normalize(vec3(1, 2, 3))));
+    for (vec3& p : body.positions) p = turn * p + vec3(0.02f, 0.05f, -0.03f);
+    return body;
+}
+
+}  // namespace
+
+std::vector<NamedBody> odd_bodies() {
+    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = tissue});
+    std::vector<vec3> corners = {
+        {0, 0, 0}, {0.03f, 0, 0}, {0, 0.03f, 0}, {0, 0, 0.03f}, {0.02f, 0.02f, 0.02f}};
+    std::vector<NetSpring> edges;
+    for (int a = 0; a < 5; ++a)
+        for (int b = 0; b < a; ++b) edges.push_back({a, b, 20});
+    Body net_body = net(corners, std::vector<float>{0.01f, 0.01f, 0.01f, 0.02f, 0.0f}, edges);
+    net_body.damping = 20;
+    Mesh bowl = ellipsoid({0.04f, 0.04f, 0.02f}, 7);
+    return {
+        {"box", lattice({9, 7, 8}, 0.01f, tissue)},
+        {"box with whole links", with_whole_links(lattice({8, 9, 5}, 0.01f, tissue))},
+        {"battered box", battered(lattice({10, 6, 7}, 0.01f, tissue), 1)},
+        {"box with strength", with_strength(lattice({7, 6, 5}, 0.01f, tissue), 2)},
+        {"organ", organ},
+        {"battered organ", battered(organ, 3)},
+        {"organ with strength", with_strength(organ, 4)},
+        {"turned box", turned(lattice({6, 5, 4}, 0.01f, tissue))},
+        {"volume of 2012", lattice({7, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})},
+        {"volume with strength",
+         with_strength(lattice({5, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20}), 5)},
+        {"cloth", cloth({17, 9}, 0.01f, linen)},
+        {"turned cloth", turned(cloth({12, 11}, 0.01f, linen))},
+        {"battered cloth", battered(cloth({11, 13}, 0.01f, linen), 6)},
+        {"cloth of triangles", cloth(bowl, linen)},
+        {"net", net_body}};
+}
+
+Acting everything(const Body& body) {
+    Acting on;
+    vec3 low(1e9f), high(-1e9f);
+    for (vec3 p : body.positions) low = glm::min(low, p), high = glm::max(high, p);
+    const vec3 middle = 0.5f * (low + high), off = middle + vec3(0.0017f, 0.0029f, 0.0023f);
+    // No node lies where the way out is left to rounding: in the middle of something, or half way between two
+    // faces.
+    on.colliders = {
+        {Plane{{0, 1, 0}, low.y - 0.001f}, 0.4f},
+        {Sphere{{high.x + 0.001f, low.y, middle.z + 0.003f}, 0.012f}, 0.3f},
+        {Box{vec3(low.x, middle.y, high.z) + vec3(0.0013f, 0.0007f, 0.0009f), {0.006f, 0.005f, 0.004f}}, 0.2f,
+         0.001f},
+        {Capsule{off - vec3(0, 0.05f, 0), off - vec3(0.03f, 0.05f, 0), 0.01f}}};
+    on.motions.assign(on.colliders.size(), Motion{});
+    on.motions[1].velocity = {-0.05f, 0.02f, 0};
+    on.motions[1].spin = {0, 1, 0};
+    on.presses = {{middle + vec3(0, 0, high.z - middle.z + 0.006f), {0, 0, -0.1f}, 0.011f, 30}};
+    on.drags = {{int(body.count() / 2), middle + vec3(0.01f, 0.02f, 0), {0.1f, 0, 0}, 3}};
+    for (std::size_t i = 0; i < body.count(); i += 3)
+        if (body.inverse_mass[i] == 0) {
+            on.moved.push_back(int(i));
+            on.places.push_back(body.positions[i] + vec3(0, 0.002f, 0.001f));
+        }
+    on.moves = {{on.moved, on.places}};
+    on.wind = {0.5f, -0.2f, 1};
+    on.air = 1.2f;
+    return on;
+}
+
+Simulation simulation(const Body& body, const Acting& on, Integrator integrator, Backend backend,
+                      int threads) {
+    float contact = 0, pull = 0;
+    for (const Press& press : on.presses) contact += pressure_per_metre(press);
+    for (const Drag& drag : on.drags) pull += drag.stiffness;
+    const double touched = touched_frequency(body, highest_frequency(body), contact, pull);
+    double step = automatic_step(integrator, touched, body.damping, body.link_damping);
+    if (!(step > 0 && step < 1e-3)) step = 1e-3;
+    return {.backend = backend,
+            .threads = threads,
+            .integrator = integrator,
+            .step = step,
+            .force = true,
+            .air = on.air,
+            .colliders = on.colliders,
+            .contact = contact,
+            .pull = pull,
+            .frame = 1e-5};
+}
+
+double furthest_apart(const std::vector<dvec3>& a, const std::vector<dvec3>& b) {
+    EXPECT_EQ(a.size(), b.size());
+    double most = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (const double d = glm::distance(a[i], b[i]); !(d <= most)) most = d;
+    return most;
+}
+
+void expect_same(const Body& body, const Acting& on, Integrator integrator, Backend backend, int steps,
+                 double bound, const gl::Context* context) {
+    const Simulation fast = simulation(body, on, integrator, backend),
+                     slow = simulation(body, on, integrator, Backend::reference);
+    const double seconds = steps * fast.step;
+    auto a = make_solver(body, fast, context), b = make_solver(body, slow);
+    auto exact = make_reference<double>(body, slow, highest_frequency(body));
+    const Stats of_a = a->step(seconds, on.influences()), of_b = b->step(seconds, on.influences()),
+                of_exact = exact->step(seconds, on.influences());
+    ASSERT_FALSE(of_a.diverged || of_b.diverged || of_exact.diverged);
+    ASSERT_EQ(of_a.steps, of_b.steps);
+    const State ends_a = a->state(), ends_b = b->state(), truth = exact->state();
+    const double place = bound + 10 * furthest_apart(ends_b.positions, truth.positions),
+                 speed = bound / fast.step / 4 + 10 * furthest_apart(ends_b.velocities, truth.velocities);
+    EXPECT_LE(furthest_apart(ends_a.positions, truth.positions), place);
+    EXPECT_LE(furthest_apart(ends_a.velocities, truth.velocities), speed);
+    const Nodes seen = a->nodes(), seen_b = b->nodes();
+    ASSERT_EQ(seen.positions.size(), body.count());
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        ASSERT_LE(glm::distance(dvec3(seen.positions[i]), ends_a.positions[i]), 1e-7) << i;
+        ASSERT_LE(glm::distance(seen.normals[i], seen_b.normals[i]), 1e-2 + 10 * place / body.spacing) << i;
+    }
+    EXPECT_LE(std::abs(of_a.largest_speed - of_exact.largest_speed), speed);
+    EXPECT_LE(std::abs(of_a.largest_move - of_exact.largest_move), place);
+    const double a_little = 1e-4 * seconds;  // of a tenth of a newton
+    EXPECT_LE(furthest_apart(of_a.reactions, of_exact.reactions),
+              a_little + 10 * furthest_apart(of_b.reactions, of_exact.reactions));
+    EXPECT_LE(furthest_apart(of_a.pulls, of_exact.pulls),
+              a_little + 10 * furthest_apart(of_b.pulls, of_exact.pulls));
+}
+
+}  // namespace palpate

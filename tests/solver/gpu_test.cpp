@@ -1,0 +1,299 @@
+// The backends of the GPU against the reference: the same physics, on whatever driver this machine has.
+#include "palpate/base/error.h"
+#include "palpate/body/cloth.h"
+#include "palpate/gl/context.h"
+#include "palpate/solver/reference/reference.h"
+#include "tests/integrators.h"
+#include "tests/shapes.h"
+#include "tests/solver/agreement.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+namespace palpate {
+namespace {
+
+class Gpu : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        try {
+            context_.emplace();
+        } catch (const Error& error) {
+            GTEST_SKIP() << "OpenGL is not available: " << error.what();
+        }
+    }
+    void TearDown() override {
+        if (context_) EXPECT_EQ(context_->errors(), 0) << context_->first_error();
+    }
+    const gl::Context* context() const { return &*context_; }
+
+    std::optional<gl::Context> context_;
+};
+
+class EveryGpu : public Gpu, public ::testing::WithParamInterface<Backend> {};
+INSTANTIATE_TEST_SUITE_P(Backends, EveryGpu,
+                         ::testing::Values(Backend::feedback, Backend::fragment, Backend::compute),
+                         [](const auto& of) { return std::string(name_of(of.param)); });
+
+using Both = std::tuple<Backend, Integrator>;
+class EveryWay : public Gpu, public ::testing::WithParamInterface<Both> {
+ protected:
+    Backend backend() const { return std::get<Backend>(GetParam()); }
+    Integrator integrator() const { return std::get<Integrator>(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Backends, EveryWay,
+                         ::testing::Combine(::testing::Values(Backend::feedback, Backend::fragment,
+                                                              Backend::compute),
+                                            ::testing::ValuesIn(every_integrator())),
+                         [](const auto& of) {
+                             std::string name = std::string(name_of(std::get<Backend>(of.param))) + "_" +
+                                                std::string(name_of(std::get<Integrator>(of.param)));
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+// 1e-5 of bodies that are about 0.1 m.
+TEST_P(EveryWay, IsTheReferenceOnEveryBody) {
+    for (const auto& [name, body] : odd_bodies()) {
+        SCOPED_TRACE(name);
+        expect_same(body, {}, integrator(), backend(), 100, 1e-6, context());
+    }
+}
+
+TEST_P(EveryWay, IsTheReferenceWithAllThatCanAct) {
+    // Explicit Euler lets what contacts stir up grow.
+    const int steps = integrator() == Integrator::explicit_euler ? 8 : 100;
+    for (auto [name, body] : odd_bodies()) {
+        SCOPED_TRACE(name);
+        body.link_damping = 1e-4f;
+        expect_same(body, everything(body), integrator(), backend(), steps, 1e-6, context());
+    }
+}
+
+TEST_P(EveryWay, IsTheReferenceOnOddSizes) {
+    // Each of the sizes along each axis.
+    const ivec3 sizes[] = {{1, 33, 9}, {2, 15, 8}, {16, 3, 15}, {17, 7, 16}, {1, 1, 1}, {1, 1, 7}};
+    for (const ivec3 d : sizes) {
+        SCOPED_TRACE(std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z));
+        const Body box = lattice(d, 0.01f, tissue);
+        expect_same(box, {}, integrator(), backend(), 100, 1e-6, context());
+        const Body sheet = cloth({d.x, d.y}, 0.01f, linen);
+        expect_same(sheet, {}, integrator(), backend(), 100, 1e-6, context());
+    }
+}
+
+// The two obstacles that everything() lacks.
+TEST_P(EveryWay, IsTheReferenceOnPolygonsAndFields) {
+    const vec3 a(-1, 0.004f, -1), b(1, -0.012f, -1), c(0, 0.003f, 1);
+    const std::vector<Collider> shapes = {
+        {Polygon{{{a, b, c}, {a, c, vec3(-1, 0.1f, 1)}}}, 0.5f},
+        {distance_field(block({-0.02f, -0.02f, -0.02f}, {0.0312f, 0.0053f, 0.0307f}), 0.003f), 0.5f},
+        {distance_field(ellipsoid({0.01f, 0.02f, 0.015f}, 12), 0.002f), 0.2f, 0.001f}};
+    for (const Body& body : {lattice({4, 3, 5}, 0.01f, tissue), cloth({7, 8}, 0.01f, linen)}) {
+        Acting on;
+        on.colliders = shapes;
+        on.motions.assign(shapes.size(), Motion{.velocity = {0.01f, 0.02f, 0}, .spin = {0, 0, 0.5f}});
+        expect_same(body, on, integrator(), backend(), integrator() == Integrator::explicit_euler ? 8 : 60,
+                    1e-6, context());
+    }
+}
+
+// Halving the step divides the error by two to the order: of coupled nodes, against the reference in double
+// with steps so fine that they are the truth.
+TEST_P(EveryWay, HasItsOrder) {
+    const double orders[] = {1, 1, 2, 2, 2, 4};
+    std::vector<vec3> places;
+    std::vector<float> masses;
+    std::vector<NetSpring> springs;
+    for (int i = 0; i < 9; ++i) {
+        places.push_back({0.1f * float(i), 0, 0});
+        masses.push_back(i == 0 ? 0 : 0.02f + 0.002f * float(i));
+        if (i > 0) springs.push_back({i - 1, i, 60, 0.095f});
+    }
+    Body chain = net(places, masses, springs);
+    chain.damping = 4;
+    const double seconds = 0.25;
+    auto swung = [&](Solver& solver) {
+        solver.step(seconds);
+        return solver.state().positions;
+    };
+    auto exact = make_reference<double>(chain, {.integrator = Integrator::rk4, .step = seconds / 4000}, 0);
+    const auto truth = swung(*exact);
+    auto error = [&](int steps) {
+        auto solver = make_solver(
+            chain, {.backend = backend(), .integrator = integrator(), .step = seconds / steps, .force = true},
+            context());
+        return furthest_apart(swung(*solver), truth);
+    };
+    const double expected = orders[std::size_t(integrator())];
+    const int steps = expected > 2   ? 16
+                      : expected > 1 ? 48
+                                     : 200;  // errors well above rounding, well below the chain
+    const double order = std::log2(error(steps) / error(2 * steps));
+    EXPECT_TRUE(std::abs(order - expected) <= 0.25 * expected) << order;
+}
+
+TEST_P(EveryWay, SavedAndRestoredToTheBit) {
+    for (const auto& [name, body] : odd_bodies()) {
+        if (name != "battered box" && name != "cloth of triangles") continue;
+        SCOPED_TRACE(name);
+        const Acting on = everything(body);
+        const Simulation how = simulation(body, on, integrator(), backend());
+        auto first = make_solver(body, how, context()), second = make_solver(body, how, context());
+        first->step(13 * how.step, on.influences());
+        second->restore(first->save());
+        for (int i = 0; i < 3; ++i) {
+            const State a = first->save(), b = second->save();
+            EXPECT_TRUE(a.positions == b.positions);
+            EXPECT_TRUE(a.velocities == b.velocities);
+            EXPECT_EQ(a.lag, b.lag);
+            first->step(5 * how.step, on.influences());
+            second->step(5 * how.step, on.influences());
+        }
+        // And between backends and integrators, both ways.
+        auto other = make_solver(body, simulation(body, on, Integrator::rk4, Backend::cpu));
+        other->restore(first->save());
+        EXPECT_LE(furthest_apart(other->state().velocities, first->state().velocities), 1e-4);
+    }
+}
+
+TEST_P(EveryWay, UndoesACall) {
+    const Body body = lattice({5, 6, 7}, 0.01f, tissue);
+    for (bool late : {false, true}) {
+        auto solver = make_solver(
+            body,
+            {.backend = backend(), .integrator = integrator(), .late = late, .step = 1e-4, .force = true},
+            context());
+        solver->step(3e-4);
+        const State before = solver->save();
+        const GpuNodes nodes = solver->gpu_nodes();
+        solver->step(5e-4, {.wind = vec3(1)});
+        EXPECT_FALSE(solver->save().positions == before.positions);
+        solver->undo();
+        EXPECT_TRUE(solver->save().positions == before.positions);
+        EXPECT_TRUE(solver->save().velocities == before.velocities);
+        EXPECT_EQ(solver->save().lag, before.lag);
+        EXPECT_EQ(solver->gpu_nodes().positions, nodes.positions);
+        EXPECT_LE(glm::distance(solver->nodes().positions[11], vec3(before.positions[11])), 1e-7f);
+    }
+}
+
+// ---- what a GPU has of its own ----
+
+State wild(const Solver& solver) {
+    State state = solver.save();
+    state.velocities[100] = {5000, 0, 0};
+    return state;
+}
+
+TEST_P(EveryGpu, IsAsItWasBeforeACallThatTearsIt) {
+    const Body body = lattice({9, 5, 7}, 0.01f, tissue);
+    auto solver = make_solver(body, {.backend = GetParam(), .step = 1e-4, .force = true}, context());
+    solver->step(3e-4);
+    solver->restore(wild(*solver));
+    const State before = solver->save();
+    EXPECT_TRUE(solver->step(5e-3).diverged);
+    EXPECT_TRUE(solver->save().positions == before.positions);
+    EXPECT_TRUE(solver->save().velocities == before.velocities);
+}
+
+// Told of a call late, it goes back to before that call, over the one since.
+TEST_P(EveryGpu, FindsLateThatACallToreIt) {
+    const Body body = lattice({9, 5, 7}, 0.01f, tissue);
+    auto solver =
+        make_solver(body, {.backend = GetParam(), .late = true, .step = 1e-4, .force = true}, context());
+    solver->step(3e-4);
+    solver->restore(wild(*solver));
+    const State before = solver->save();
+    Stats stats = solver->step(5e-3);
+    EXPECT_TRUE(stats.late && !stats.diverged && stats.steps == 50);
+    stats = solver->step(5e-3);
+    EXPECT_TRUE(stats.late && stats.diverged);
+    EXPECT_TRUE(solver->save().positions == before.positions);
+    EXPECT_TRUE(solver->save().velocities == before.velocities);
+}
+
+TEST_P(EveryGpu, TellsLateWhatItTellsAtOnce) {
+    const Body body = lattice({6, 5, 4}, 0.01f, tissue);
+    const Acting on = everything(body);
+    Simulation how = simulation(body, on, Integrator::verlet, GetParam());
+    auto prompt = make_solver(body, how, context());
+    how.late = true;
+    auto late = make_solver(body, how, context());
+    Stats before{};
+    for (int call = 0; call < 5; ++call) {
+        const Stats now = prompt->step(4 * how.step, on.influences()),
+                    told = late->step(4 * how.step, on.influences());
+        EXPECT_FALSE(now.late);
+        EXPECT_TRUE(told.late);
+        EXPECT_EQ(told.steps, now.steps);
+        EXPECT_EQ(told.largest_speed, before.largest_speed);
+        EXPECT_EQ(told.largest_move, before.largest_move);
+        EXPECT_TRUE(told.reactions == before.reactions && told.pulls == before.pulls);
+        before = now;
+    }
+    EXPECT_TRUE(late->save().positions == prompt->save().positions);
+    EXPECT_GT(before.largest_speed, 0);
+}
+
+TEST_P(EveryGpu, ReadsNothingBackToStep) {
+    const Body body = lattice({6, 5, 4}, 0.01f, tissue);
+    const Acting on = everything(body);
+    auto solver = make_solver(body, simulation(body, on, Integrator::rk4, GetParam()), context());
+    const long before = context()->reads();
+    for (int call = 0; call < 3; ++call) solver->step(1e-4, on.influences());
+    const GpuNodes there = solver->gpu_nodes();
+    EXPECT_EQ(context()->reads(), before);
+    // And what is there is what nodes() reads.
+    const Nodes nodes = solver->nodes();
+    EXPECT_EQ(context()->reads(), before + 2);
+    solver->nodes();
+    EXPECT_EQ(context()->reads(), before + 2);
+    ASSERT_EQ(there.count, body.count());
+    std::vector<vec4> positions(body.count());
+    context()->read(there.positions, std::as_writable_bytes(std::span(positions)));
+    Bounds box;
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        EXPECT_EQ(vec3(positions[i]), nodes.positions[i]);
+        box.include(nodes.positions[i]);
+    }
+    EXPECT_EQ(there.bounds.low, box.low);
+    EXPECT_EQ(there.bounds.high, box.high);
+}
+
+TEST_P(EveryGpu, TakesABodyOfNoNodes) {
+    for (const Body& body : {lattice({0, 0, 0}, 0.01f, tissue), Body{}}) {
+        auto solver = make_solver(body, {.backend = GetParam()}, context());
+        EXPECT_FALSE(solver->step(0.01).diverged);
+        EXPECT_TRUE(solver->nodes().positions.empty());
+    }
+}
+
+// A thin ring of nodes along the diagonal of a box that is nearly empty.
+TEST_P(EveryGpu, KeepsNoBoxThatIsMostlyEmpty) {
+    Mesh rod = ellipsoid({0.012f, 0.012f, 0.3f}, 24);
+    rotate(rod, {40, 30, 0});
+    const Body body = lattice(rod, {.spacing = 0.01f, .material = tissue});
+    auto solver = make_solver(body, {.backend = GetParam()}, context());
+    EXPECT_LE(double(solver->memory()), 700.0 * double(body.count()));
+    expect_same(body, everything(body), Integrator::verlet, GetParam(), 20, 1e-6, context());
+}
+
+TEST_P(EveryGpu, GoesInAContextOfItsOwnToo) {
+    auto solver = make_solver(lattice({3, 3, 3}, 0.01f, tissue), {.backend = GetParam()});
+    auto another = make_solver(lattice({4, 3, 3}, 0.01f, tissue), {.backend = GetParam()});
+    for (int call = 0; call < 3; ++call) {
+        EXPECT_FALSE(solver->step(0.01).diverged);
+        EXPECT_FALSE(another->step(0.01).diverged);
+    }
+    EXPECT_LT(solver->nodes().positions[0].y, -0.001f);
+    EXPECT_LT(another->nodes().positions[0].y, -0.001f);
+    context_->make_current();  // theirs went with them
+}
+
+}  // namespace
+}  // namespace palpate
