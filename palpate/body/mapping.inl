@@ -66,12 +66,15 @@ FN Real3 clear_direction(Real3 normal) {
 // still defined, and the world's axes for the rest. x runs along the triangle, y out of it, z across.
 FN Followed on_triangle(Real3 a, Real3 b, Real3 c, Real3 approximate, Real curvature) {
     Real3 nothing = Real3(0.0f, 0.0f, 0.0f);
-    Real3 flat_normal = direction(cross(b - a, c - a), nothing);
+    Real3 along_b = b - a, along_c = c - a, area = cross(along_b, along_c);
+    // Of a collapsed triangle, rounding leaves a little area, whose direction is chance.
+    Real3 flat_normal =
+        select(dot(area, area) > Real(1e-12f) * dot(along_b, along_b) * dot(along_c, along_c), direction(area, nothing), nothing);
     Real3 turned = select(dot(approximate, approximate) > Real(0.0025f), direction(approximate, flat_normal), flat_normal);
     Followed f;
     f.position = nothing;
     f.y = direction(flat_normal + curvature * (turned - flat_normal), Real3(0.0f, 0.0f, 1.0f));
-    Real3 along = direction(b - a, any_across(f.y));
+    Real3 along = direction(along_b, any_across(f.y));
     f.z = direction(cross(f.y, along), direction(any_across(f.y), Real3(1.0f, 0.0f, 0.0f)));
     f.x = cross(f.z, f.y);
     return f;

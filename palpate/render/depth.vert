@@ -1,10 +1,13 @@
 #version 450 core
 // A corner of anything, for shadow maps.
 
-layout(location = 0) in vec3 position;
-
 uniform mat4 to_clip;
-uniform vec3 centre;  // see surface.vert
-uniform float size;
 
-void main() { gl_Position = to_clip * vec4(centre + size * position, 1); }
+void map_vertex(out vec3 position, out vec3 normal, out vec4 tangent);
+
+void main() {
+    vec3 place, normal;
+    vec4 tangent;
+    map_vertex(place, normal, tangent);
+    gl_Position = to_clip * vec4(place, 1);
+}

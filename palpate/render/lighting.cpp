@@ -9,7 +9,7 @@ constexpr std::size_t most_occluders = 8;  // as in sky.glsl
 
 }  // namespace
 
-Lighting lighting(const Picture& picture, int pixels) {
+Lighting lighting(const Picture& picture, std::span<const Bounds> surfaces, int pixels) {
     Lighting light;
     Bounds casters;
     auto add = [&](const Bounds& box) {
@@ -19,7 +19,7 @@ Lighting lighting(const Picture& picture, int pixels) {
         light.round.push_back(box);
     };
     for (const Ball& ball : picture.balls) add(bounds_of(ball));
-    for (const Surface& surface : picture.surfaces) add(bounds_of(surface.positions));
+    for (const Bounds& box : surfaces) add(box);
 
     const Extent extent = around(casters);
     const vec3 direction = unit(picture.light.direction, vec3(0, -1, 0));

@@ -17,8 +17,9 @@ struct Lighting {
     std::vector<Bounds> round;  // the round things that hide the sky: first the balls, then the surfaces
 };
 
-/// For a shadow map of `pixels` a side, which what casts shadows fills.
-Lighting lighting(const Picture& picture, int pixels);
+/// For a shadow map of `pixels` a side, which what casts shadows fills. `surfaces`: the box around each of
+/// the picture's.
+Lighting lighting(const Picture& picture, std::span<const Bounds> surfaces, int pixels);
 
 /// Sets all uniforms of light.frag and sky.glsl, and those of `view`. The first `occluders` of the round
 /// things hide the sky of what the program draws.

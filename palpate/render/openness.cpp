@@ -35,7 +35,7 @@ std::vector<vec3> normals_of(const Mesh& mesh) {
 
 Openness::Openness() : map_(map_size), gather_({{GL_COMPUTE_SHADER, "openness.comp", openness_comp}}) {}
 
-gl::Buffer Openness::measure(const Mesh& mesh) const {
+gl::Buffer Openness::measure(const Mesh& mesh, const gl::Program& depth) const {
     const std::vector<float> none(mesh.positions.size(), 0.0f);
     gl::Buffer openness(none);
     const gl::Buffer positions(mesh.positions);
@@ -56,12 +56,14 @@ gl::Buffer Openness::measure(const Mesh& mesh) const {
 
     gather_.set("lift", 3 * extent.radius / map_size);
     gather_.set("share", 4.0f / lights);  // a free surface faces half of the lights, at one half on average
+    depth.set("centre", vec3(0));
+    depth.set("size", 1.0f);
     for (int i = 0; i < lights; ++i) {
         const vec3 to_light = spread(i);
         const mat4 to_clip = along(-to_light, extent);
-        const gl::Program& shadow = map_.begin(to_clip);
-        shadow.set("centre", vec3(0));
-        shadow.set("size", 1.0f);
+        map_.begin();
+        depth.use();
+        depth.set("to_clip", to_clip);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * mesh.triangles.size()), GL_UNSIGNED_INT,
                        nullptr);
 

@@ -12,8 +12,8 @@ class Openness {
  public:
     Openness();
 
-    /// One float a vertex.
-    gl::Buffer measure(const Mesh& mesh) const;
+    /// One float a vertex. `depth` draws places into a shadow map, as in Programs::placed.
+    gl::Buffer measure(const Mesh& mesh, const gl::Program& depth) const;
 
  private:
     ShadowMap map_;

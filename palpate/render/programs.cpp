@@ -6,6 +6,9 @@ namespace {
 const char* background_frag =
 #include "embedded/background.frag.h"
     ;
+const char* depth_vert =
+#include "embedded/depth.vert.h"
+    ;
 const char* ground_frag =
 #include "embedded/ground.frag.h"
     ;
@@ -14,6 +17,9 @@ const char* ground_vert =
     ;
 const char* light_frag =
 #include "embedded/light.frag.h"
+    ;
+const char* placed_glsl =
+#include "embedded/placed.glsl.h"
     ;
 const char* screen_vert =
 #include "embedded/screen.vert.h"
@@ -39,15 +45,20 @@ const char* wires_vert =
 
 }  // namespace
 
+SurfacePrograms::SurfacePrograms(std::string_view map_vertex)
+    : shown({{GL_VERTEX_SHADER, "surface.vert", surface_vert},
+             {GL_VERTEX_SHADER, "map_vertex()", map_vertex},
+             {GL_VERTEX_SHADER, "sky.glsl", sky_glsl},
+             {GL_FRAGMENT_SHADER, "surface.frag", surface_frag},
+             {GL_FRAGMENT_SHADER, "light.frag", light_frag},
+             {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}),
+      depth({{GL_VERTEX_SHADER, "depth.vert", depth_vert}, {GL_VERTEX_SHADER, "map_vertex()", map_vertex}}) {}
+
 Programs::Programs()
     : background({{GL_VERTEX_SHADER, "screen.vert", screen_vert},
                   {GL_FRAGMENT_SHADER, "background.frag", background_frag},
                   {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}),
-      surface({{GL_VERTEX_SHADER, "surface.vert", surface_vert},
-               {GL_VERTEX_SHADER, "sky.glsl", sky_glsl},
-               {GL_FRAGMENT_SHADER, "surface.frag", surface_frag},
-               {GL_FRAGMENT_SHADER, "light.frag", light_frag},
-               {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}),
+      placed(placed_glsl),
       ground({{GL_VERTEX_SHADER, "ground.vert", ground_vert},
               {GL_FRAGMENT_SHADER, "ground.frag", ground_frag},
               {GL_FRAGMENT_SHADER, "sky.glsl", sky_glsl},

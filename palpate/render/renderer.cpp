@@ -2,6 +2,7 @@
 
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
+#include "palpate/render/gpu_embedding.h"
 #include "palpate/render/lighting.h"
 #include "palpate/render/openness.h"
 #include "palpate/render/programs.h"
@@ -13,7 +14,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <optional>
+#include <string>
 
 namespace palpate {
 namespace {
@@ -23,8 +27,12 @@ constexpr float wire_width = 1.3f;   // pixels
 constexpr float wire_lift = 0.005f;  // in radii of the things; see wires.vert
 constexpr float ball_shine = 0.4f;
 
-// The attributes of surface.vert.
-enum Attribute : GLuint { position_attribute, normal_attribute, openness_attribute };
+// The attributes of placed.glsl and surface.vert.
+enum Attribute : GLuint {
+    position_attribute,
+    normal_attribute,
+    openness_attribute = GpuEmbedding::free_attribute
+};
 
 // What does not move of a mesh.
 struct Model {
@@ -33,13 +41,20 @@ struct Model {
     GLsizei corners = 0;
     std::size_t vertices = 0;
     bool closed = false;  // then nobody sees its triangles from behind
+    std::optional<GpuEmbedding> embedding;
+    Reach reach;
 };
 
-// What moves of it, for one surface of the picture.
+// What moves of it, for one surface of the picture: of its vertices, or of the nodes that they hang on.
 struct Moving {
     gl::Buffer positions;
     gl::Buffer normals;
+    GpuNodes nodes = {};  // where it hangs on nodes: in these buffers, or whose they are
 };
+
+// How surfaces are drawn, for a picture or for a shadow map: tells the program that draws so what it shall
+// know.
+using Pass = std::function<const gl::Program&(const SurfacePrograms&)>;
 
 // Whether triangles lie on both sides of every edge and turn their fronts outwards.
 bool closed(const Mesh& mesh) {
@@ -55,8 +70,13 @@ bool closed(const Mesh& mesh) {
 }
 
 Model model(const Mesh& mesh, gl::Buffer openness) {
-    return {gl::Buffer(mesh.triangles), std::move(openness), static_cast<GLsizei>(3 * mesh.triangles.size()),
-            mesh.positions.size(), closed(mesh)};
+    Model made;
+    made.triangles = gl::Buffer(mesh.triangles);
+    made.openness = std::move(openness);
+    made.corners = static_cast<GLsizei>(3 * mesh.triangles.size());
+    made.vertices = mesh.positions.size();
+    made.closed = closed(mesh);
+    return made;
 }
 
 gl::Buffer wide_open(std::size_t vertices) {
@@ -64,18 +84,39 @@ gl::Buffer wide_open(std::size_t vertices) {
     return gl::Buffer(ones);
 }
 
-// Three attributes, each from a buffer of its own.
+// An attribute from a buffer of its own, which is bound as the attribute is numbered.
+void enable(GLuint corners, Attribute number, int numbers) {
+    glEnableVertexArrayAttrib(corners, number);
+    glVertexArrayAttribFormat(corners, number, numbers, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(corners, number, number);
+}
+
 gl::VertexArray corners_of_surfaces() {
     gl::VertexArray corners;
-    auto attribute = [&](Attribute number, int numbers) {
-        glEnableVertexArrayAttrib(corners.name(), number);
-        glVertexArrayAttribFormat(corners.name(), number, numbers, GL_FLOAT, GL_FALSE, 0);
-        glVertexArrayAttribBinding(corners.name(), number, number);
-    };
-    attribute(position_attribute, 3);
-    attribute(normal_attribute, 3);
-    attribute(openness_attribute, 1);
+    enable(corners.name(), position_attribute, 3);
+    enable(corners.name(), normal_attribute, 3);
+    enable(corners.name(), openness_attribute, 1);
     return corners;
+}
+
+// What does not move of a model, for the vertices that `corners` describes.
+void attach(const Model& model, GLuint corners) {
+    glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
+    glVertexArrayElementBuffer(corners, model.triangles.name());
+}
+
+std::vector<vec4> with_room(std::span<const vec3> vectors) {
+    std::vector<vec4> list;
+    list.reserve(vectors.size());
+    for (vec3 v : vectors) list.emplace_back(v, 0.0f);
+    return list;
+}
+
+Bounds box_around(const Surface& surface, const Reach& reach) {
+    if (!surface.positions.empty()) return bounds_of(surface.positions);
+    const vec3 corners[] = {surface.gpu_nodes.bounds.low, surface.gpu_nodes.bounds.high};
+    return reach.around(surface.gpu_nodes.positions != 0 ? bounds_of(corners)
+                                                         : bounds_of(surface.nodes.positions));
 }
 
 // The square of ground that is drawn: its middle is below the things.
@@ -112,6 +153,7 @@ struct Renderer::Parts {
     Openness openness;
 
     Programs programs;
+    std::map<std::string, SurfacePrograms> mapped;  // by the text that maps
 
     gl::VertexArray surface_corners = corners_of_surfaces();
     gl::VertexArray no_corners;  // for shaders that make their own
@@ -125,12 +167,16 @@ struct Renderer::Parts {
     ~Parts() { context.make_current_or_not(); }
 
     void draw(const Picture& picture);
+    std::vector<Bounds> boxes(const std::vector<Surface>& surfaces) const;
     void upload(const std::vector<Surface>& surfaces);
-    void cast_shadows(const Picture& picture, const Lighting& light) const;
+    void upload(const Surface& surface, Moving& to) const;
+    void cast_shadows(const Picture& picture, const Lighting& light);
     void draw_background() const;
-    void draw_surfaces(const std::vector<Surface>& surfaces, const gl::Program& program) const;
-    void draw_balls(const std::vector<Ball>& balls, const gl::Program& program) const;
-    void draw_model(const Model& model, const Moving& shape) const;
+    const SurfacePrograms& programs_for(const Model& model, const Moving& shape);
+    void draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass);
+    void draw_balls(const std::vector<Ball>& balls, const Pass& pass) const;
+    void bind(const Model& model, const Moving& shape) const;
+    void draw_triangles(const Model& model) const;
     void draw_wires(const Wires& some, const View& seen, const Extent& things);
     void draw_ground(const Ground& one, const View& seen, const Extent& things) const;
 };
@@ -151,42 +197,71 @@ Renderer::Parts::Parts(Offscreen size, const gl::Context* given)
 }
 
 void Renderer::Parts::draw(const Picture& picture) {
-    const Extent things = extent(picture);
+    const std::vector<Bounds> around = boxes(picture.surfaces);
+    const Extent things = extent(picture, around);
     const View seen = view(picture.camera, target.aspect(), reach(picture, things));
-    const Lighting light = lighting(picture, shadow_size);
-    tell(programs.surface, seen, light, picture.balls.size());
+    const Lighting light = lighting(picture, around, shadow_size);
+    const Pass shown = [&](const SurfacePrograms& some) -> const gl::Program& {
+        tell(some.shown, seen, light, picture.balls.size());
+        return some.shown;
+    };
     tell(programs.ground, seen, light, light.round.size());
 
     upload(picture.surfaces);
     cast_shadows(picture, light);
     target.begin();
     glEnable(GL_DEPTH_TEST);
-    draw_surfaces(picture.surfaces, programs.surface);
+    draw_surfaces(picture.surfaces, shown);
     draw_background();
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     for (const Wires& some : picture.wires) draw_wires(some, seen, things);
     // After the wires, which shine through a surface but not through a tool.
-    draw_balls(picture.balls, programs.surface);
+    draw_balls(picture.balls, shown);
     for (const Ground& one : picture.grounds) draw_ground(one, seen, things);
     glDisable(GL_BLEND);
     target.end();
 }
 
-void Renderer::Parts::upload(const std::vector<Surface>& surfaces) {
-    while (moving.size() < surfaces.size()) moving.emplace_back();
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        assert(surfaces[i].positions.size() == models.at(surfaces[i].mesh).vertices);
-        assert(surfaces[i].normals.size() == surfaces[i].positions.size());
-        moving[i].positions.upload(surfaces[i].positions);
-        moving[i].normals.upload(surfaces[i].normals);
-    }
+std::vector<Bounds> Renderer::Parts::boxes(const std::vector<Surface>& surfaces) const {
+    std::vector<Bounds> list;
+    for (const Surface& surface : surfaces)
+        list.push_back(box_around(surface, models.at(surface.mesh).reach));
+    return list;
 }
 
-void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light) const {
-    const gl::Program& program = shadow.begin(light.to_clip);
-    draw_surfaces(picture.surfaces, program);
-    draw_balls(picture.balls, program);
+void Renderer::Parts::upload(const std::vector<Surface>& surfaces) {
+    while (moving.size() < surfaces.size()) moving.emplace_back();
+    for (std::size_t i = 0; i < surfaces.size(); ++i) upload(surfaces[i], moving[i]);
+}
+
+void Renderer::Parts::upload(const Surface& surface, Moving& to) const {
+    const Model& model = models.at(surface.mesh);
+    to.nodes = {};
+    if (surface.positions.size() == model.vertices) {
+        assert(surface.normals.size() == surface.positions.size());
+        to.positions.upload(surface.positions);
+        to.normals.upload(surface.normals);
+        return;
+    }
+    assert(surface.positions.empty() && model.embedding);
+    to.nodes = surface.gpu_nodes;
+    if (to.nodes.positions != 0) return;
+    to.positions.upload(with_room(surface.nodes.positions));
+    to.nodes.positions = to.positions.name();
+    if (!model.embedding->needs_normals()) return;
+    to.normals.upload(with_room(surface.nodes.normals));
+    to.nodes.normals = to.normals.name();
+}
+
+void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light) {
+    const Pass depth = [&](const SurfacePrograms& some) -> const gl::Program& {
+        some.depth.set("to_clip", light.to_clip);
+        return some.depth;
+    };
+    shadow.begin();
+    draw_surfaces(picture.surfaces, depth);
+    draw_balls(picture.balls, depth);
     shadow.bind();
 }
 
@@ -199,35 +274,49 @@ void Renderer::Parts::draw_background() const {
     glDepthFunc(GL_LESS);
 }
 
-void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const gl::Program& program) const {
-    program.use();
-    program.set("centre", vec3(0));
-    program.set("size", 1.0f);
+const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const Moving& shape) {
+    if (shape.nodes.positions == 0) return programs.placed;
+    const std::string text = "#version 450 core\n" + model.embedding->shader(shape.nodes.width > 0);
+    return mapped.try_emplace(text, text).first->second;
+}
+
+void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const Model& model = models[surfaces[i].mesh];
+        const gl::Program& program = pass(programs_for(model, moving[i]));
+        bind(model, moving[i]);
+        program.use();
+        program.set("centre", vec3(0));
+        program.set("size", 1.0f);
         program.set("look", surfaces[i].look.colour);
         program.set("shine", surfaces[i].look.shine);
-        draw_model(models[surfaces[i].mesh], moving[i]);
+        draw_triangles(model);
     }
 }
 
-void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const gl::Program& program) const {
+void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pass) const {
+    const gl::Program& program = pass(programs.placed);
+    bind(ball_model, ball_shape);
     program.use();
     program.set("shine", ball_shine);
     for (const Ball& ball : balls) {
         program.set("centre", ball.centre);
         program.set("size", ball.radius);
         program.set("look", ball.colour);
-        draw_model(ball_model, ball_shape);
+        draw_triangles(ball_model);
     }
 }
 
-void Renderer::Parts::draw_model(const Model& model, const Moving& shape) const {
+void Renderer::Parts::bind(const Model& model, const Moving& shape) const {
+    if (shape.nodes.positions != 0) return model.embedding->bind(shape.nodes);
     const GLuint corners = surface_corners.name();
     glVertexArrayVertexBuffer(corners, position_attribute, shape.positions.name(), 0, sizeof(vec3));
     glVertexArrayVertexBuffer(corners, normal_attribute, shape.normals.name(), 0, sizeof(vec3));
-    glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
-    glVertexArrayElementBuffer(corners, model.triangles.name());
+    attach(model, corners);
     glBindVertexArray(corners);
+}
+
+void Renderer::Parts::draw_triangles(const Model& model) const {
     // Fragments are what costs, and half of them would be the far side's.
     if (model.closed) glEnable(GL_CULL_FACE);
     glDrawElements(GL_TRIANGLES, model.corners, GL_UNSIGNED_INT, nullptr);
@@ -290,8 +379,19 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 int Renderer::add(const Mesh& mesh) {
     parts_->context.make_current();
-    parts_->models.push_back(model(mesh, parts_->openness.measure(mesh)));
+    parts_->models.push_back(model(mesh, parts_->openness.measure(mesh, parts_->programs.placed.depth)));
     return static_cast<int>(parts_->models.size()) - 1;
+}
+
+int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
+    const int number = add(mesh);
+    Model& model = parts_->models.back();
+    model.embedding.emplace(embedding);
+    model.reach = palpate::reach(mesh, embedding);
+    const GLuint corners = model.embedding->vertex_array();
+    enable(corners, openness_attribute, 1);
+    attach(model, corners);
+    return number;
 }
 
 void Renderer::draw(const Picture& picture) {
@@ -301,7 +401,7 @@ void Renderer::draw(const Picture& picture) {
 
 Image Renderer::image() const {
     parts_->context.make_current();
-    return parts_->target.read();
+    return parts_->target.read(parts_->context);
 }
 
 const gl::Context& Renderer::context() const { return parts_->context; }

@@ -1,16 +1,8 @@
 #include "palpate/render/shadow_map.h"
 
 namespace palpate {
-namespace {
 
-const char* depth_vert =
-#include "embedded/depth.vert.h"
-    ;
-
-}  // namespace
-
-ShadowMap::ShadowMap(int size)
-    : program_({{GL_VERTEX_SHADER, "depth.vert", depth_vert}}), depth_(GL_DEPTH_COMPONENT32F, size, size) {
+ShadowMap::ShadowMap(int size) : depth_(GL_DEPTH_COMPONENT32F, size, size) {
     glNamedFramebufferTexture(framebuffer_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
     glNamedFramebufferDrawBuffer(framebuffer_.name(), GL_NONE);
     for (const gl::Sampler* sampler : {&lit_, &stopped_}) {
@@ -27,16 +19,13 @@ ShadowMap::ShadowMap(int size)
     glSamplerParameteri(stopped_.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
-const gl::Program& ShadowMap::begin(const mat4& light) const {
+void ShadowMap::begin() const {
     const GLfloat far = 1;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size(), size());
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &far);
-    program_.use();
-    program_.set("to_clip", light);
-    return program_;
 }
 
 void ShadowMap::bind() const {

@@ -1,5 +1,4 @@
 #pragma once
-#include "palpate/gl/program.h"
 #include "palpate/gl/texture.h"
 
 namespace palpate {
@@ -10,10 +9,8 @@ class ShadowMap {
     /// `size` pixels wide and high.
     explicit ShadowMap(int size);
 
-    /// What is drawn next stops the light that `light`, from the world to clip space, stands for. Returns the
-    /// program that is then in use: it takes positions as attribute 0 and the uniforms `centre` and `size` of
-    /// surface.vert.
-    const gl::Program& begin(const mat4& light) const;
+    /// What is drawn next, seen from the light and its depth only, stops that.
+    void begin() const;
 
     /// For shaders to read, at texture unit 0 as a sampler2DShadow (1 where lit, 0 where shadowed), and at 1
     /// as a sampler2D (the depth at which the light stopped, 0 to 1).
@@ -22,7 +19,6 @@ class ShadowMap {
     int size() const { return depth_.width(); }
 
  private:
-    gl::Program program_;
     gl::Texture depth_;
     gl::Sampler lit_, stopped_;
     gl::Framebuffer framebuffer_;

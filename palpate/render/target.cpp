@@ -51,10 +51,10 @@ void Target::end() const {
                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-Image Target::read() const {
+Image Target::read(const gl::Context& context) const {
     Image image{width(), height(), std::vector<std::uint8_t>(4u * width() * height())};
-    glGetTextureImage(pixels_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.pixels.size()),
-                      image.pixels.data());
+    context.read_texture(pixels_.name(), GL_RGBA, GL_UNSIGNED_BYTE,
+                         std::as_writable_bytes(std::span(image.pixels)));
     // OpenGL's rows go up.
     const auto row = image.pixels.begin();
     const std::ptrdiff_t bytes = 4 * image.width;

@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/gl/context.h"
 #include "palpate/gl/texture.h"
 #include "palpate/mesh/image.h"
 
@@ -18,7 +19,7 @@ class Target {
     void end() const;
 
     /// What was drawn before the last end().
-    Image read() const;
+    Image read(const gl::Context& context) const;
 
     int width() const { return pixels_.width(); }
     int height() const { return pixels_.height(); }

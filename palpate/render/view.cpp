@@ -32,14 +32,14 @@ Extent around(const Bounds& box) {
     return {box.centre(), std::max(0.5f * length(box.size()), 1e-6f)};
 }
 
-Extent extent(const Picture& picture) {
+Extent extent(const Picture& picture, std::span<const Bounds> surfaces) {
     Bounds all;
     auto add = [&](const Bounds& box) {
         if (box.empty()) return;
         all.include(box.low);
         all.include(box.high);
     };
-    for (const Surface& surface : picture.surfaces) add(bounds_of(surface.positions));
+    for (const Bounds& box : surfaces) add(box);
     for (const Wires& some : picture.wires) add(bounds_of(some.points));
     for (const Ball& ball : picture.balls) add(bounds_of(ball));
     if (!all.empty() || !usable(picture.camera.eye) || !usable(picture.camera.look_at)) return around(all);

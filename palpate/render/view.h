@@ -20,7 +20,8 @@ Bounds bounds_of(const Ball& ball);
 Extent around(const Bounds& box);
 
 /// Around all that a picture shows but its grounds; if that is nothing, around where its camera looks.
-Extent extent(const Picture& picture);
+/// `surfaces`: the box around each of the picture's.
+Extent extent(const Picture& picture, std::span<const Bounds> surfaces);
 
 /// How a camera sees: always finite, however odd the camera.
 struct View {

@@ -1,0 +1,240 @@
+#include "palpate/render/gpu_embedding.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <unordered_map>
+
+namespace palpate {
+namespace {
+
+const char* frames_comp =
+#include "embedded/frames.comp.h"
+    ;
+const char* in_cells_glsl =
+#include "embedded/in_cells.glsl.h"
+    ;
+const char* mapping_glsl =
+#include "embedded/mapping.glsl.h"
+    ;
+const char* mapping_inl =
+#include "embedded/mapping.inl.h"
+    ;
+const char* nodes_in_buffers_glsl =
+#include "embedded/nodes_in_buffers.glsl.h"
+    ;
+const char* nodes_in_textures_glsl =
+#include "embedded/nodes_in_textures.glsl.h"
+    ;
+const char* on_frames_glsl =
+#include "embedded/on_frames.glsl.h"
+    ;
+const char* on_triangles_glsl =
+#include "embedded/on_triangles.glsl.h"
+    ;
+const char* words_glsl =
+#include "embedded/words.glsl.h"
+    ;
+
+constexpr int frames_group = 64;  // as in frames.comp
+
+// Shaders read these as they lie.
+static_assert(sizeof(Frame) == 15 * 4 && sizeof(Spoke) == 4 * 4);
+
+// What stands before all that speaks of nodes.
+std::string prelude(bool in_textures) {
+    return std::string(words_glsl) + mapping_inl +
+           (in_textures ? nodes_in_textures_glsl : nodes_in_buffers_glsl);
+}
+
+gl::Program finder(bool in_textures) {
+    const std::string text = "#version 450 core\n" + prelude(in_textures) + frames_comp;
+    return gl::Program({{GL_COMPUTE_SHADER, "frames.comp", text}});
+}
+
+// Attributes of one vertex array that lie together in one buffer, as members of a `Vertex`.
+template <class Vertex>
+class Attributes {
+ public:
+    Attributes(GLuint corners, const gl::Buffer& vertices) : corners_(corners) {
+        glVertexArrayVertexBuffer(corners_, 0, vertices.name(), 0, sizeof(Vertex));
+    }
+    void floats(GLuint number, int numbers, std::size_t offset) const {
+        enable(number);
+        glVertexArrayAttribFormat(corners_, number, numbers, GL_FLOAT, GL_FALSE, GLuint(offset));
+    }
+    void ints(GLuint number, int numbers, std::size_t offset) const {
+        enable(number);
+        glVertexArrayAttribIFormat(corners_, number, numbers, GL_INT, GLuint(offset));
+    }
+
+ private:
+    void enable(GLuint number) const {
+        glEnableVertexArrayAttrib(corners_, number);
+        glVertexArrayAttribBinding(corners_, number, 0);
+    }
+    GLuint corners_;
+};
+
+}  // namespace
+
+GpuEmbedding::Frames::Frames(const Framed& framed)
+    : count(framed.frames.size()),
+      rest(framed.frames),
+      spokes(framed.spokes),
+      faces(framed.faces),
+      found(gl::Buffer::room(count * sizeof(mat4))),
+      from_buffers(finder(false)),
+      from_textures(finder(true)) {}
+
+GpuEmbedding::GpuEmbedding(const Embedding& embedding) : has_tangents_(!embedding.tangents.empty()) {
+    std::visit([&](const auto& vertices) { attach(vertices); }, embedding.vertices);
+    if (has_tangents_) attach_tangents(embedding.tangents);
+    glSamplerParameteri(exact_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glSamplerParameteri(exact_.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+// The numbers of the attributes are those in the kind's GLSL.
+
+void GpuEmbedding::attach(const std::vector<InCell>& vertices) {
+    kind_ = in_cells_glsl;
+    vertices_ = gl::Buffer(vertices);
+    const Attributes<InCell> attributes(corners_.name(), vertices_);
+    attributes.floats(0, 3, offsetof(InCell, normal));
+    attributes.floats(2, 3, offsetof(InCell, at));
+    attributes.ints(3, 4, offsetof(InCell, nodes));
+    attributes.ints(4, 4, offsetof(InCell, nodes) + 4 * sizeof(int));
+}
+
+void GpuEmbedding::attach(const std::vector<OnTriangle>& vertices) {
+    kind_ = on_triangles_glsl;
+    vertices_ = gl::Buffer(vertices);
+    needs_normals_ =
+        std::any_of(vertices.begin(), vertices.end(), [](const auto& v) { return v.curvature > 0; });
+    const Attributes<OnTriangle> attributes(corners_.name(), vertices_);
+    attributes.floats(0, 3, offsetof(OnTriangle, normal));
+    attributes.floats(2, 3, offsetof(OnTriangle, weights));
+    attributes.floats(3, 3, offsetof(OnTriangle, offset));
+    attributes.floats(4, 1, offsetof(OnTriangle, curvature));
+    attributes.ints(5, 3, offsetof(OnTriangle, nodes));
+}
+
+void GpuEmbedding::attach(const Framed& framed) {
+    kind_ = on_frames_glsl;
+    vertices_ = gl::Buffer(framed.vertices);
+    frames_.emplace(framed);
+    const Attributes<OnFrames> attributes(corners_.name(), vertices_);
+    attributes.floats(0, 3, offsetof(OnFrames, normal));
+    attributes.floats(2, 3, offsetof(OnFrames, weights));
+    for (GLuint k = 0; k < 3; ++k) attributes.floats(3 + k, 3, offsetof(OnFrames, arms) + k * sizeof(vec3));
+    attributes.ints(6, 3, offsetof(OnFrames, frames));
+}
+
+void GpuEmbedding::attach_tangents(const std::vector<vec4>& tangents) {
+    tangents_ = gl::Buffer(tangents);
+    glEnableVertexArrayAttrib(vertex_array(), 1);
+    glVertexArrayAttribFormat(vertex_array(), 1, 4, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayVertexBuffer(vertex_array(), 1, tangents_.name(), 0, sizeof(vec4));
+}
+
+std::string GpuEmbedding::shader(bool in_textures) const {
+    return prelude(in_textures) + kind_ + mapping_glsl;
+}
+
+void GpuEmbedding::bind(const GpuNodes& nodes) const {
+    assert(nodes.positions != 0 && (nodes.normals != 0 || !needs_normals_));
+    const GLuint normals = nodes.normals != 0 ? nodes.normals : nodes.positions;  // never read, but there
+    const bool in_textures = nodes.width > 0;
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    if (in_textures) {
+        glBindTextureUnit(2, nodes.positions);
+        glBindTextureUnit(3, normals);
+        glBindSampler(2, exact_.name());
+        glBindSampler(3, exact_.name());
+    } else {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, nodes.positions);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, normals);
+    }
+    if (frames_) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, frames_->found.name());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, frames_->rest.name());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, frames_->spokes.name());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, frames_->faces.name());
+        (in_textures ? frames_->from_textures : frames_->from_buffers).use();
+        glDispatchCompute(GLuint((frames_->count + frames_group - 1) / frames_group), 1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+    glBindVertexArray(vertex_array());
+}
+
+namespace {
+
+vec3 corner(std::size_t k) { return vec3(k & 1, k >> 1 & 1, k >> 2 & 1); }
+
+// The spacing of the grid in which vertices hang: how far two that share a node lie apart in metres, over how
+// far in cells.
+float spacing(const Mesh& mesh, const std::vector<InCell>& vertices) {
+    std::unordered_map<int, std::pair<vec3, vec3>>
+        seen;  // for a node, a vertex: where it is, and from the node
+    double metres = 0, cells = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        for (std::size_t k = 0; k < 8; ++k) {
+            const vec3 place = mesh.positions[i], from_node = vertices[i].at - corner(k);
+            const auto [other, is_new] = seen.try_emplace(vertices[i].nodes[k], place, from_node);
+            if (is_new) continue;
+            metres += distance(place, other->second.first);
+            cells += distance(from_node, other->second.second);
+        }
+    return cells > 0 ? float(metres / cells) : 0;
+}
+
+// From the places under vertices, on the nodes' side, to the vertices.
+
+std::vector<vec3> ways(const Mesh& mesh, const std::vector<InCell>& vertices) {
+    const float metres = spacing(mesh, vertices);
+    std::vector<vec3> list;
+    for (const InCell& v : vertices) list.push_back(metres * (v.at - clamp(v.at, vec3(0), vec3(1))));
+    return list;
+}
+
+// Of the offset, which is known in a basis that is not, the part along the normal, which nearly all of it is.
+std::vector<vec3> ways(const Mesh& mesh, const std::vector<OnTriangle>& vertices) {
+    std::vector<vec3> normals = mesh.normals;
+    if (normals.size() != mesh.positions.size()) compute_normals(mesh.positions, mesh.triangles, normals);
+    std::vector<vec3> list;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        list.push_back(dot(vertices[i].offset, vertices[i].normal) * normals[i]);
+    return list;
+}
+
+std::vector<vec3> ways(const Mesh&, const Framed& framed) {
+    std::vector<vec3> list;
+    for (const OnFrames& v : framed.vertices)
+        list.push_back(v.weights.x * v.arms[0] + v.weights.y * v.arms[1] + v.weights.z * v.arms[2]);
+    return list;
+}
+
+}  // namespace
+
+Reach reach(const Mesh& mesh, const Embedding& embedding) {
+    const std::vector<vec3> list =
+        std::visit([&](const auto& vertices) { return ways(mesh, vertices); }, embedding.vertices);
+    Reach reach;
+    Bounds surface, under;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        surface.include(mesh.positions[i]);
+        under.include(mesh.positions[i] - list[i]);
+        reach.beyond = std::max(reach.beyond, length(list[i]));
+    }
+    const float width = length(under.size());
+    if (width > 0) reach.growth = std::max(length(surface.size()) / width, 1.0f);
+    return reach;
+}
+
+Bounds Reach::around(const Bounds& nodes) const {
+    if (nodes.empty()) return nodes;
+    const vec3 inner = 0.5f * nodes.size(), half = min(max(growth * inner, vec3(beyond)), inner + beyond);
+    return {nodes.centre() - half, nodes.centre() + half};
+}
+
+}  // namespace palpate

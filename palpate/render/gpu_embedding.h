@@ -1,0 +1,83 @@
+#pragma once
+#include "palpate/body/embedding.h"
+#include "palpate/gl/buffer.h"
+#include "palpate/gl/program.h"
+
+#include <optional>
+#include <string>
+
+namespace palpate {
+
+/// An embedding in the memory of a GPU, and the GLSL by which a vertex shader, ours or that of another
+/// OpenGL application, maps each vertex where it is drawn: what deform() does on the host. Move-only; its
+/// context (4.5 core) must be current whenever it is used, and when it ends. With that context current, an
+/// application
+///
+/// 1. makes one of these, and a vertex shader out of its shader() and a text of its own, as two shaders of
+///    one program or as one text, which declares
+///        void map_vertex(out vec3 position, out vec3 normal, out vec4 tangent);
+///    and calls it: position in m; normal unit; tangent unit, at right angles to the normal, w its handedness
+///    (chance where the embedding has no tangents);
+/// 2. gives vertex_array() its triangles (glVertexArrayElementBuffer), whose numbers are those of the mesh
+///    that was embedded, and if it likes attributes of its own, from `free_attribute` on;
+/// 3. for each frame puts the nodes' positions into a buffer or texture by any shader, calls bind() and
+///    then, with its own program in use, glDrawElements(GL_TRIANGLES, ...).
+///
+/// The shader takes the buffer bindings 0 to 2 or, for nodes in textures, the texture units 2 and 3 and the
+/// buffer binding 2; bind() also uses 3 to 5. In one text with it, the names of mapping.inl are taken.
+class GpuEmbedding {
+ public:
+    static constexpr GLuint free_attribute = 8;  // those below are the embedding's
+
+    explicit GpuEmbedding(const Embedding& embedding);
+
+    /// The GLSL of map_vertex(), without a #version line: that must be 450 core. `in_textures`: it finds the
+    /// nodes in textures (GpuNodes::width > 0) rather than in buffers.
+    std::string shader(bool in_textures = false) const;
+
+    /// Vertices that are drawn next hang on these nodes, in the state in which shaders have left them so far.
+    /// Binds vertex_array() and what shader() reads. On frames it also runs a compute shader, so a program
+    /// must be put to use after it. Normals are needed if needs_normals() says so.
+    void bind(const GpuNodes& nodes) const;
+
+    GLuint vertex_array() const { return corners_.name(); }
+    bool needs_normals() const { return needs_normals_; }
+    bool has_tangents() const { return has_tangents_; }
+
+ private:
+    // The frames that vertices hang on, and what finds them.
+    struct Frames {
+        std::size_t count;
+        gl::Buffer rest, spokes, faces, found;
+        gl::Program from_buffers, from_textures;
+        explicit Frames(const Framed& framed);
+    };
+
+    void attach(const std::vector<InCell>& vertices);
+    void attach(const std::vector<OnTriangle>& vertices);
+    void attach(const Framed& framed);
+    void attach_tangents(const std::vector<vec4>& tangents);
+
+    gl::VertexArray corners_;
+    gl::Buffer vertices_, tangents_;
+    gl::Sampler exact_;  // so that a texture without mipmaps can be read, however its owner made it
+    std::optional<Frames> frames_;
+    const char* kind_ = nullptr;  // how a vertex of this kind follows, in GLSL
+    bool needs_normals_ = false;
+    bool has_tangents_ = false;
+};
+
+/// How a surface at rest lies about the nodes that it hangs on. As it deforms, nobody on the host knows where
+/// it is, but of the nodes that is known.
+struct Reach {
+    float growth = 1;  // how many times as wide the surface is as the places under its vertices
+    float beyond = 0;  // m, the longest way from such a place to its vertex
+
+    /// A box around the surface, from the box around its nodes.
+    Bounds around(const Bounds& nodes) const;
+};
+
+/// `mesh` is the one that was embedded.
+Reach reach(const Mesh& mesh, const Embedding& embedding);
+
+}  // namespace palpate

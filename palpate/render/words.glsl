@@ -1,0 +1,6 @@
+// The words of mapping.inl in GLSL.
+#define FN
+#define Real float
+#define Real3 vec3
+#define select(c, a, b) ((c) ? (a) : (b))
+#define x_of(v) (v).x
