@@ -73,7 +73,7 @@ class Gpu final : public Solver {
           quiet_(quiet_pass()),
           shown_positions_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           shown_normals_(gl::Buffer::room(body_.count() * sizeof(vec4))),
-          adders_(std::min(groups(placement_.slots) * group, most_adders)),
+          adders_(std::clamp(groups(world_.rim_count()) * group, group, most_adders)),
           answers_(context_, adders_) {
         for (Where where : {current, between, further, sum})
             if (needs(scheme_, where) || (where == further && scheme_.stages.size() > 1))
@@ -265,6 +265,8 @@ class Gpu final : public Solver {
     void add_impulses(const Touched& tools, double seconds) const {
         tools.impulses.use();
         tools.impulses.set("seconds", float(seconds));
+        tools.impulses.set("count", world_.rim_count());
+        world_.bind_rim(9);
         answers_.bind_impulses();
         glDispatchCompute(GLuint(adders_ / group), 1, 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -1,20 +1,23 @@
-// touch.comp: the impulses that tips and drags give to the nodes in one pass. Each invocation adds up those of every so
-// manieth slot; the host adds up the sums.
+// touch.comp: the impulses that tips and drags give to the nodes in one pass. Each invocation adds up those that a tip
+// gives to every so manieth node of the outside, which alone it touches; the host adds up the sums.
 
 layout(local_size_x = 64) in;
+layout(binding = 9) uniform isamplerBuffer rim;  // the slots of the nodes of the outside
 layout(std430, binding = 0) buffer Impulses { vec4 impulses[]; };  // N s: by tips and then drags, of each invocation
+uniform int count;      // of the nodes of the outside
 uniform float seconds;  // over which the forces act
 
 void main() {
     int first = int(gl_GlobalInvocationID.x), stride = int(gl_NumWorkGroups.x * gl_WorkGroupSize.x);
-    for (int i = 0; i < pass.tips + pass.drags; ++i) {
+    for (int i = 0; i < TIPS; ++i) {
         vec3 sum = vec3(0);
-        for (int slot = first; slot < SLOTS; slot += stride) {
-            vec4 kept = at(positions, slot);
-            if (kept.w < 0) continue;
-            look_at(slot);
-            sum += i < pass.tips ? tip_force(kept.xyz, i) : drag_force(kept.xyz, i - pass.tips);
+        for (int k = first; k < count; k += stride) {
+            look_at(texelFetch(rim, k).x);
+            sum += tip_force(at(positions, id).xyz, i);
         }
         impulses[i * stride + first].xyz += seconds * sum;
     }
+    if (first >= DRAGS) return;
+    look_at(pass.dragged[first / 4][first % 4]);
+    impulses[(TIPS + first) * stride + first].xyz += seconds * drag_force(at(positions, id).xyz, first);
 }

@@ -54,6 +54,14 @@ std::vector<uvec4> traits_of(const Body& body, const Placement& placement) {
     return traits;
 }
 
+// The slots of the nodes that have an outside.
+std::vector<int> rim_of(const Body& body, const Placement& placement) {
+    std::vector<int> rim;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.area[i] > 0) rim.push_back(placement.slot[i]);
+    return rim;
+}
+
 // Springs written out, those of each link together, so that neighbouring nodes read side by side.
 gl::Field ties_of(const Body& body, const Placement& placement) {
     if (placement.grid) {
@@ -143,6 +151,8 @@ World::World(const Body& body, const Simulation& simulation, const Placement& pl
     : traits_(field(GL_RGBA32UI, traits_of(body, placement))),
       ties_(ties_of(body, placement)),
       slots_(field(GL_R32I, placement.slot)),
+      rim_(field(GL_R32I, rim_of(body, placement))),
+      rim_count_(int(rim_of(body, placement).size())),
       corners_(field(GL_RGBA32F, with_room(polygon_corners(simulation)))),
       distances_(field(GL_R32F, all_distances(simulation))),
       grids_(field(GL_RGBA32F, grids_of(simulation))),
@@ -198,7 +208,7 @@ void World::stand(const State& state) {
 }
 
 std::size_t World::bytes() const {
-    return traits_.bytes() + ties_.bytes() + slots_.bytes() + guides_.bytes();
+    return traits_.bytes() + ties_.bytes() + slots_.bytes() + rim_.bytes() + guides_.bytes();
 }
 
 }  // namespace palpate::gpu
