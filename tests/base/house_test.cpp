@@ -23,6 +23,10 @@ const std::map<std::string, std::set<std::string>> may_include = {
     {"body", {"base", "mesh"}},
     {"scene", {"base", "mesh", "body"}},
     {"solver", {"base", "mesh", "body"}},
+    {"solver/gpu", {"base", "mesh", "body", "gl"}},
+    {"solver/feedback", {"base", "mesh", "body", "gl"}},
+    {"solver/fragment", {"base", "mesh", "body", "gl"}},
+    {"solver/compute", {"base", "mesh", "body", "gl"}},
     {"render", {"base", "mesh", "gl", "body", "scene"}},
     {"run", {"base", "mesh", "gl", "body", "scene", "solver", "render"}},
 };
@@ -44,9 +48,12 @@ TEST(House, EachFloorIncludesOnlyWhatStandsBelow) {
         const std::filesystem::path below = std::filesystem::relative(entry.path(), house);
         if (!entry.is_regular_file() || std::distance(below.begin(), below.end()) < 2) continue;
         const std::string floor = *below.begin();
-        ASSERT_TRUE(may_include.contains(floor)) << floor << " is not in the table";
+        // A folder within a floor may have a line of its own.
+        const std::string inner = below.parent_path().string();
+        const std::string line = may_include.contains(inner) ? inner : floor;
+        ASSERT_TRUE(may_include.contains(line)) << line << " is not in the table";
         for (const std::string& folder : included_by(entry.path()))
-            EXPECT_TRUE(folder == floor || may_include.at(floor).contains(folder))
+            EXPECT_TRUE(folder == floor || may_include.at(line).contains(folder))
                 << below << " includes " << folder;
         ++files;
     }
@@ -67,7 +74,7 @@ TEST(House, TheWholeLibraryIsInItsOneHeader) {
         const bool part_of_drawing =
             below.starts_with("gl/") || below.starts_with("render/") || below.starts_with("run/");
         if (entry.path().extension() != ".h" || inner.contains(below) || part_of_drawing ||
-            below.starts_with("mesh/formats/") || below == "palpate.h")
+            below.starts_with("mesh/formats/") || below.starts_with("solver/gpu/") || below == "palpate.h")
             continue;
         EXPECT_NE(all.find("palpate/" + below), std::string::npos) << below;
     }

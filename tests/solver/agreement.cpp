@@ -152,10 +152,17 @@ double furthest_apart(const std::vector<dvec3>& a, const std::vector<dvec3>& b) 
 
 void expect_same(const Body& body, const Acting& on, Integrator integrator, Backend backend, int steps,
                  double bound, const gl::Context* context) {
-    const Simulation fast = simulation(body, on, integrator, backend),
-                     slow = simulation(body, on, integrator, Backend::reference);
+    const Simulation how = simulation(body, on, integrator, backend);
+    expect_same(*make_solver(body, how, context), body, on, how, steps, bound);
+}
+
+void expect_same(Solver& solver, const Body& body, const Acting& on, const Simulation& fast, int steps,
+                 double bound) {
+    Simulation slow = fast;
+    slow.backend = Backend::reference;
+    Solver* const a = &solver;
     const double seconds = steps * fast.step;
-    auto a = make_solver(body, fast, context), b = make_solver(body, slow);
+    auto b = make_solver(body, slow);
     auto exact = make_reference<double>(body, slow, highest_frequency(body));
     const Stats of_a = a->step(seconds, on.influences()), of_b = b->step(seconds, on.influences()),
                 of_exact = exact->step(seconds, on.influences());

@@ -46,4 +46,8 @@ double furthest_apart(const std::vector<dvec3>& a, const std::vector<dvec3>& b);
 void expect_same(const Body& body, const Acting& on, Integrator integrator, Backend backend, int steps,
                  double bound, const gl::Context* context = nullptr);
 
+/// The same for a solver that was made for simulation(body, on, integrator, backend).
+void expect_same(Solver& solver, const Body& body, const Acting& on, const Simulation& how, int steps,
+                 double bound);
+
 }  // namespace palpate

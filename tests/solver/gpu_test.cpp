@@ -1,8 +1,11 @@
 // The backends of the GPU against the reference: the same physics, on whatever driver this machine has.
+#include "palpate/solver/gpu/gpu.h"
+
 #include "palpate/base/error.h"
 #include "palpate/body/cloth.h"
 #include "palpate/gl/context.h"
 #include "palpate/solver/reference/reference.h"
+#include "palpate/solver/stability.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
 #include "tests/solver/agreement.h"
@@ -263,6 +266,19 @@ TEST_P(EveryGpu, ReadsNothingBackToStep) {
     }
     EXPECT_EQ(there.bounds.low, box.low);
     EXPECT_EQ(there.bounds.high, box.high);
+}
+
+// Whatever it does by itself on this driver.
+TEST_F(Gpu, ComputesInTilesAndWithout) {
+    for (const auto& [name, body] : odd_bodies())
+        for (bool tiles : {false, true}) {
+            if (name != "battered organ" && name != "volume of 2012" && name != "battered cloth") continue;
+            SCOPED_TRACE(name + (tiles ? ", in tiles" : ""));
+            const Acting on = everything(body);
+            const Simulation how = simulation(body, on, Integrator::verlet, Backend::compute);
+            const auto solver = make_gpu(body, how, highest_frequency(body), context(), tiles);
+            expect_same(*solver, body, on, how, 25, 1e-6);
+        }
 }
 
 TEST_P(EveryGpu, TakesABodyOfNoNodes) {

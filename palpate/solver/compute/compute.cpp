@@ -8,16 +8,20 @@ const char* pass_comp =
 #include "embedded/pass.comp.h"
     ;
 
-constexpr int group = 64;  // as in pass.comp
+constexpr int group = 64;  // as in pass.comp, where there are no tiles
 
 gl::Program program(const Text& text) {
     const std::string whole = text.physics + pass_comp;
     return gl::Program({{GL_COMPUTE_SHADER, "pass.comp", whole}});
 }
 
+ivec3 groups(const Text& text) {
+    return text.tiles.x > 0 ? text.tiles : ivec3((text.slots + group - 1) / group, 1, 1);
+}
+
 class Compute final : public Pipeline {
  public:
-    explicit Compute(const Text& text) : program_(program(text)), sums_(text.sums), slots_(text.slots) {}
+    explicit Compute(const Text& text) : program_(program(text)), sums_(text.sums), groups_(groups(text)) {}
 
     void pass(const Fields& fields) override {
         fields.start.positions.bind(10);
@@ -31,7 +35,7 @@ class Compute final : public Pipeline {
                                   fields.next_sum.positions.buffer(), fields.next_sum.velocities.buffer()};
         glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, sums_ ? 4 : 2, outputs);
         program_.use();
-        glDispatchCompute(GLuint((slots_ + group - 1) / group), 1, 1);
+        glDispatchCompute(GLuint(groups_.x), GLuint(groups_.y), GLuint(groups_.z));
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                         GL_BUFFER_UPDATE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
     }
@@ -39,7 +43,7 @@ class Compute final : public Pipeline {
  private:
     gl::Program program_;
     bool sums_;
-    int slots_;
+    ivec3 groups_;
 };
 
 }  // namespace

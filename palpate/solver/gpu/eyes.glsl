@@ -55,7 +55,13 @@ float longest(int l) { return pass.spring[l].longest; }
 float neighbour(int l) { return share(l) > 0 ? 1.0 : 0.0; }
 #endif
 
+#ifdef TILE
+shared vec4 tile[TILE_ROOM];  // positions of the nodes of a work group, and of those round it
+int spot;                     // this node's place in it
+vec3 toward(vec3 p, int l) { return tile[spot + tile_offset[l]].xyz - p; }
+#else
 vec3 toward(vec3 p, int l) { return at(positions, other(l)).xyz - p; }
+#endif
 vec3 passing(vec3 v, int l) { return velocity_of(at(velocities, other(l))) - v; }
 vec3 origin() { return vec3(0); }
 float area() { return uintBitsToFloat(trait.z); }

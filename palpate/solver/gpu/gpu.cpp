@@ -59,7 +59,8 @@ const gl::Context& current_one(std::optional<gl::Context>& own, const gl::Contex
 
 class Gpu final : public Solver {
  public:
-    Gpu(const Body& body, const Simulation& simulation, double frequency, const gl::Context* context)
+    Gpu(const Body& body, const Simulation& simulation, double frequency, const gl::Context* context,
+        std::optional<bool> tiles)
         : context_(current_one(own_, context)),
           body_(body),
           simulation_(simulation),
@@ -68,8 +69,9 @@ class Gpu final : public Solver {
           placement_(body_),
           width_(simulation.backend == Backend::fragment ? row : 0),
           world_(body_, simulation_, placement_),
-          alone_(make_pipeline(simulation.backend, text(false))),
-          closing_(compute_program(text(false), "closing.comp", closing_comp)),
+          tiled_(simulation.backend == Backend::compute && tiles.value_or(false)),
+          alone_(make_pipeline(simulation.backend, text(false, tiled_))),
+          closing_(compute_program(text(false, false), "closing.comp", closing_comp)),
           quiet_(quiet_pass()),
           shown_positions_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           shown_normals_(gl::Buffer::room(body_.count() * sizeof(vec4))),
@@ -213,11 +215,13 @@ class Gpu final : public Solver {
     };
     const Touched& touched() {
         if (!touched_)
-            touched_ = Touched{make_pipeline(simulation_.backend, text(true)),
-                               compute_program(text(true), "touch.comp", touch_comp)};
+            touched_ = Touched{make_pipeline(simulation_.backend, text(true, tiled_)),
+                               compute_program(text(true, false), "touch.comp", touch_comp)};
         return *touched_;
     }
-    Text text(bool with_tools) const { return physics(body_, simulation_, placement_, width_, with_tools); }
+    Text text(bool with_tools, bool tiled) const {
+        return physics(body_, simulation_, placement_, width_, with_tools, tiled);
+    }
 
     bool adds_up() const { return needs(scheme_, sum); }
 
@@ -377,6 +381,7 @@ class Gpu final : public Solver {
     const Placement placement_;
     const int width_;  // of flat textures; 0: buffers
     World world_;
+    const bool tiled_;
     std::unique_ptr<Pipeline> alone_;  // with no tools
     gl::Program closing_;
     std::optional<Touched> touched_;
@@ -397,8 +402,8 @@ class Gpu final : public Solver {
 }  // namespace
 
 std::unique_ptr<Solver> make_gpu(const Body& body, const Simulation& simulation, double frequency,
-                                 const gl::Context* context) {
-    return std::make_unique<Gpu>(body, simulation, frequency, context);
+                                 const gl::Context* context, std::optional<bool> tiles) {
+    return std::make_unique<Gpu>(body, simulation, frequency, context, tiles);
 }
 
 }  // namespace palpate

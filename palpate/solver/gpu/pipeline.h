@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/base/vectors.h"
 #include "palpate/gl/field.h"
 
 #include <memory>
@@ -33,6 +34,7 @@ struct Text {
     std::string physics;
     bool sums = false;  // the integrator adds up its passes
     int slots = 0;
+    ivec3 tiles = ivec3(0);  // of a grid that is cut into tiles, how many along each axis
 };
 
 // The three, each in its folder.

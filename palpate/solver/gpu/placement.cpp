@@ -39,7 +39,9 @@ Placement::Placement(const Body& body) {
         offsets.push_back(number(link.offset));
         room = std::max(room, std::abs(offsets.back()));
     }
-    for (ivec3 p : stencil->at) slot.push_back(room + number(p - box.low));
+    dims = box.dims;
+    first = room;
+    for (ivec3 p : stencil->at) slot.push_back(first + number(p - box.low));
     slots = room + int(volume) + room;
 }
 

@@ -13,6 +13,8 @@ struct Placement {
     explicit Placement(const Body& body);
 
     bool grid = false;
+    ivec3 dims = ivec3(0);     // of a grid's box
+    int first = 0;             // slot of its first place
     std::vector<int> offsets;  // in slots, along each link of a grid
     int slots = 0;             // with the room on both sides
     std::vector<int> slot;     // of each node

@@ -8,6 +8,7 @@
 //   SPACING a     of the body, m
 //   SUMS          the integrator adds up its passes
 //   GUIDES        there are nodes of infinite mass
+//   TILE          a work group keeps its nodes' positions at hand; what goes with it is in tiles.h
 //   FLAT n        the state lies in textures of rows of n; else in buffers
 
 #define FN

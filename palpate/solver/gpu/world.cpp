@@ -1,5 +1,6 @@
 #include "palpate/solver/gpu/world.h"
 
+#include "palpate/solver/gpu/tiles.h"
 #include "palpate/solver/scheme.h"
 
 #include <fmt/format.h>
@@ -120,7 +121,7 @@ std::size_t count_guides(const Body& body) {
 }  // namespace
 
 Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
-             bool touched) {
+             bool touched, bool tiled) {
     const bool sums = scheme(simulation.integrator).stages.front().part > 0;
     std::string text = "#version 450 core\n";
     auto define = [&](bool holds, const std::string& what) {
@@ -142,9 +143,16 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     define(!touched, "TIPS 0");
     define(!touched, "DRAGS 0");
     define(width > 0, fmt::format("FLAT {}", width));
+    Text made{{}, sums, placement.slots};
+    if (tiled && stencil) {
+        const Tiles cut = tiles(body, placement);
+        text += gpu::text(cut, body, placement);
+        made.tiles = cut.groups;
+    }
     for (const char* part : {prelude_glsl, pass_inl, eyes_glsl, node_inl, obstacles_inl, turn_glsl})
         text += part;
-    return {std::move(text), sums, placement.slots};
+    made.physics = std::move(text);
+    return made;
 }
 
 World::World(const Body& body, const Simulation& simulation, const Placement& placement)

@@ -13,7 +13,7 @@ namespace palpate::gpu {
 /// The physics of a body as GLSL, with or without tools. What cannot act is left out: a software driver runs
 /// both sides of every branch.
 Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
-             bool touched);
+             bool touched, bool tiled);
 
 /// All that nodes look at besides the moving state: what they are made of, the pass, guides and obstacles.
 class World {
