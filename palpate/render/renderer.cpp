@@ -26,18 +26,21 @@ constexpr int shadow_size = 1024;    // pixels
 constexpr float wire_width = 1.3f;   // pixels
 constexpr float wire_lift = 0.005f;  // in radii of the things; see wires.vert
 constexpr float ball_shine = 0.4f;
+constexpr GLuint colour_map_unit = 4, normal_map_unit = 5;  // as in surface.frag
 
 // The attributes of placed.glsl and surface.vert.
 enum Attribute : GLuint {
     position_attribute,
     normal_attribute,
-    openness_attribute = GpuEmbedding::free_attribute
+    openness_attribute = GpuEmbedding::free_attribute,
+    uv_attribute
 };
 
 // What does not move of a mesh.
 struct Model {
     gl::Buffer triangles;
-    gl::Buffer openness;
+    gl::Buffer openness, uvs;
+    bool has_uvs = false;
     GLsizei corners = 0;
     std::size_t vertices = 0;
     bool closed = false;  // then nobody sees its triangles from behind
@@ -73,6 +76,8 @@ Model model(const Mesh& mesh, gl::Buffer openness) {
     Model made;
     made.triangles = gl::Buffer(mesh.triangles);
     made.openness = std::move(openness);
+    made.has_uvs = !mesh.uvs.empty();
+    made.uvs = gl::Buffer(mesh.uvs);
     made.corners = static_cast<GLsizei>(3 * mesh.triangles.size());
     made.vertices = mesh.positions.size();
     made.closed = closed(mesh);
@@ -96,13 +101,41 @@ gl::VertexArray corners_of_surfaces() {
     enable(corners.name(), position_attribute, 3);
     enable(corners.name(), normal_attribute, 3);
     enable(corners.name(), openness_attribute, 1);
+    enable(corners.name(), uv_attribute, 2);
     return corners;
 }
 
 // What does not move of a model, for the vertices that `corners` describes.
 void attach(const Model& model, GLuint corners) {
     glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
+    glVertexArrayVertexBuffer(corners, uv_attribute, model.uvs.name(), 0, sizeof(vec2));
+    (model.has_uvs ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(corners, uv_attribute);
     glVertexArrayElementBuffer(corners, model.triangles.name());
+}
+
+gl::Sampler sampler_of_maps() {
+    gl::Sampler sampler;
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+        GLfloat most = 1;
+        glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &most);
+        glSamplerParameterf(sampler.name(), GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(most, 8.0f));
+    }
+    return sampler;
+}
+
+// OpenGL's rows go up.
+gl::Texture texture_of(const Image& image, Texels texels) {
+    check_size(image.width, image.height);
+    assert(image.pixels.size() == 4 * std::size_t(image.width) * std::size_t(image.height));
+    std::vector<std::uint8_t> rows;
+    rows.reserve(image.pixels.size());
+    const std::ptrdiff_t bytes = 4 * std::ptrdiff_t(image.width);
+    for (auto end = image.pixels.end(); end != image.pixels.begin(); end -= bytes)
+        rows.insert(rows.end(), end - bytes, end);
+    return gl::Texture::with_mipmaps(texels == Texels::colours ? GL_SRGB8_ALPHA8 : GL_RGBA8, image.width,
+                                     image.height, rows.data());
 }
 
 std::vector<vec4> with_room(std::span<const vec3> vectors) {
@@ -157,6 +190,8 @@ struct Renderer::Parts {
 
     gl::VertexArray surface_corners = corners_of_surfaces();
     gl::VertexArray no_corners;  // for shaders that make their own
+    std::vector<gl::Texture> maps;
+    gl::Sampler map_sampler = sampler_of_maps();
     std::vector<Model> models;
     std::vector<Moving> moving;
     Model ball_model;
@@ -176,6 +211,8 @@ struct Renderer::Parts {
     void draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass);
     void draw_balls(const std::vector<Ball>& balls, const Pass& pass) const;
     void bind(const Model& model, const Moving& shape) const;
+    void set_look(const gl::Program& program, const Look& look, const Model& model,
+                  const Moving& shape) const;
     void draw_triangles(const Model& model) const;
     void draw_wires(const Wires& some, const View& seen, const Extent& things);
     void draw_ground(const Ground& one, const View& seen, const Extent& things) const;
@@ -288,8 +325,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
         program.use();
         program.set("centre", vec3(0));
         program.set("size", 1.0f);
-        program.set("look", surfaces[i].look.colour);
-        program.set("shine", surfaces[i].look.shine);
+        set_look(program, surfaces[i].look, model, moving[i]);
         draw_triangles(model);
     }
 }
@@ -298,7 +334,7 @@ void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pas
     const gl::Program& program = pass(programs.placed);
     bind(ball_model, ball_shape);
     program.use();
-    program.set("shine", ball_shine);
+    set_look(program, {.shine = ball_shine}, ball_model, ball_shape);
     for (const Ball& ball : balls) {
         program.set("centre", ball.centre);
         program.set("size", ball.radius);
@@ -314,6 +350,24 @@ void Renderer::Parts::bind(const Model& model, const Moving& shape) const {
     glVertexArrayVertexBuffer(corners, normal_attribute, shape.normals.name(), 0, sizeof(vec3));
     attach(model, corners);
     glBindVertexArray(corners);
+}
+
+void Renderer::Parts::set_look(const gl::Program& program, const Look& look, const Model& model,
+                               const Moving& shape) const {
+    const bool has_tangents = shape.nodes.positions != 0 && model.embedding->has_tangents();
+    const bool coloured = look.colour_map >= 0 && model.has_uvs;
+    const bool bumpy = look.normal_map >= 0 && model.has_uvs && has_tangents;
+    program.set("look", look.colour);
+    program.set("shine", look.shine);
+    program.set("coloured", coloured);
+    program.set("bumpy", bumpy);
+    program.set("shows_normals", look.shows_normals);
+    auto lay = [&](GLuint unit, int map) {
+        glBindTextureUnit(unit, maps.at(map).name());
+        glBindSampler(unit, map_sampler.name());
+    };
+    if (coloured) lay(colour_map_unit, look.colour_map);
+    if (bumpy) lay(normal_map_unit, look.normal_map);
 }
 
 void Renderer::Parts::draw_triangles(const Model& model) const {
@@ -390,8 +444,15 @@ int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
     model.reach = palpate::reach(mesh, embedding);
     const GLuint corners = model.embedding->vertex_array();
     enable(corners, openness_attribute, 1);
+    enable(corners, uv_attribute, 2);
     attach(model, corners);
     return number;
+}
+
+int Renderer::add(const Image& image, Texels texels) {
+    parts_->context.make_current();
+    parts_->maps.push_back(texture_of(image, texels));
+    return static_cast<int>(parts_->maps.size()) - 1;
 }
 
 void Renderer::draw(const Picture& picture) {
