@@ -69,7 +69,7 @@ Mesh sponge() {
     for (int z = 0; z < waves.dims.z; ++z)
         for (int y = 0; y < waves.dims.y; ++y)
             for (int x = 0; x < waves.dims.x; ++x) {
-                const vec3 p = waves.origin + waves.spacing * vec3(x, y, z), w = 210.0f * p;
+                const vec3 p = waves.origin + waves.spacing * vec3(x, y, z), w = 210.0f * p + 0.5f;
                 const vec3 inside = vec3(0.03f, 0.06f, 0.03f) - abs(p);
                 const float wave = glm::dot(sin(w), cos(vec3(w.y, w.z, w.x))) + 0.75f;
                 waves.values.push_back(std::min({wave, 300 * inside.x, 300 * inside.y, 300 * inside.z}));

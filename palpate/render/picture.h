@@ -57,6 +57,9 @@ struct Picture {
     std::vector<Wires> wires = {};
     std::vector<Ball> balls = {};
     std::vector<Ground> grounds = {};
+    /// Whether what cannot be seen of surfaces that are mapped on the GPU is left out before that. No pixel
+    /// depends on it.
+    bool culls = true;
 };
 
 }  // namespace palpate

@@ -2,10 +2,12 @@
 
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
+#include "palpate/render/culling.h"
 #include "palpate/render/gpu_embedding.h"
 #include "palpate/render/lighting.h"
 #include "palpate/render/openness.h"
 #include "palpate/render/programs.h"
+#include "palpate/render/reach.h"
 #include "palpate/render/shadow_map.h"
 #include "palpate/render/target.h"
 #include "palpate/render/unit_ball.h"
@@ -26,6 +28,7 @@ constexpr int shadow_size = 1024;    // pixels
 constexpr float wire_width = 1.3f;   // pixels
 constexpr float wire_lift = 0.005f;  // in radii of the things; see wires.vert
 constexpr float ball_shine = 0.4f;
+constexpr std::size_t cluster_vertices = 64, cluster_faces = 124;
 constexpr GLuint colour_map_unit = 4, normal_map_unit = 5;  // as in surface.frag
 
 // The attributes of placed.glsl and surface.vert.
@@ -44,7 +47,9 @@ struct Model {
     GLsizei corners = 0;
     std::size_t vertices = 0;
     bool closed = false;  // then nobody sees its triangles from behind
+    // Of one that was added with an embedding:
     std::optional<GpuEmbedding> embedding;
+    std::optional<Culling> shadow_culling, picture_culling;
     Reach reach;
 };
 
@@ -55,9 +60,13 @@ struct Moving {
     GpuNodes nodes = {};  // where it hangs on nodes: in these buffers, or whose they are
 };
 
-// How surfaces are drawn, for a picture or for a shadow map: tells the program that draws so what it shall
-// know.
-using Pass = std::function<const gl::Program&(const SurfacePrograms&)>;
+// How surfaces are drawn, for a picture or for a shadow map.
+struct Pass {
+    View view;
+    std::function<const gl::Program&(const SurfacePrograms&)> begin;  // tells the program what it shall know
+    std::optional<Culling> Model::*culling;
+    bool culls;
+};
 
 // Whether triangles lie on both sides of every edge and turn their fronts outwards.
 bool closed(const Mesh& mesh) {
@@ -238,10 +247,11 @@ void Renderer::Parts::draw(const Picture& picture) {
     const Extent things = extent(picture, around);
     const View seen = view(picture.camera, target.aspect(), reach(picture, things));
     const Lighting light = lighting(picture, around, shadow_size);
-    const Pass shown = [&](const SurfacePrograms& some) -> const gl::Program& {
+    auto begin = [&](const SurfacePrograms& some) -> const gl::Program& {
         tell(some.shown, seen, light, picture.balls.size());
         return some.shown;
     };
+    const Pass shown{seen, begin, &Model::picture_culling, picture.culls};
     tell(programs.ground, seen, light, light.round.size());
 
     upload(picture.surfaces);
@@ -292,10 +302,12 @@ void Renderer::Parts::upload(const Surface& surface, Moving& to) const {
 }
 
 void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light) {
-    const Pass depth = [&](const SurfacePrograms& some) -> const gl::Program& {
+    auto begin = [&](const SurfacePrograms& some) -> const gl::Program& {
         some.depth.set("to_clip", light.to_clip);
         return some.depth;
     };
+    const View from_light{light.to_clip, vec4(light.to_light, 0), vec3(0)};
+    const Pass depth{from_light, begin, &Model::shadow_culling, picture.culls};
     shadow.begin();
     draw_surfaces(picture.surfaces, depth);
     draw_balls(picture.balls, depth);
@@ -320,18 +332,27 @@ const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const M
 void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const Model& model = models[surfaces[i].mesh];
-        const gl::Program& program = pass(programs_for(model, moving[i]));
+        const gl::Program& program = pass.begin(programs_for(model, moving[i]));
         bind(model, moving[i]);
+        const bool culls = pass.culls && moving[i].nodes.positions != 0;
+        const std::optional<Culling>& culling = model.*pass.culling;
+        if (culls) culling->find(pass.view, model.closed, moving[i].nodes.width > 0);
         program.use();
         program.set("centre", vec3(0));
         program.set("size", 1.0f);
         set_look(program, surfaces[i].look, model, moving[i]);
-        draw_triangles(model);
+        // Fragments are what costs, and half of them would be the far side's.
+        if (model.closed) glEnable(GL_CULL_FACE);
+        if (culls)
+            culling->draw();
+        else
+            draw_triangles(model);
+        glDisable(GL_CULL_FACE);
     }
 }
 
 void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pass) const {
-    const gl::Program& program = pass(programs.placed);
+    const gl::Program& program = pass.begin(programs.placed);
     bind(ball_model, ball_shape);
     program.use();
     set_look(program, {.shine = ball_shine}, ball_model, ball_shape);
@@ -371,10 +392,7 @@ void Renderer::Parts::set_look(const gl::Program& program, const Look& look, con
 }
 
 void Renderer::Parts::draw_triangles(const Model& model) const {
-    // Fragments are what costs, and half of them would be the far side's.
-    if (model.closed) glEnable(GL_CULL_FACE);
     glDrawElements(GL_TRIANGLES, model.corners, GL_UNSIGNED_INT, nullptr);
-    glDisable(GL_CULL_FACE);
 }
 
 // Twice: where nothing hides the lines, and then faintly the others.
@@ -440,7 +458,11 @@ int Renderer::add(const Mesh& mesh) {
 int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
     const int number = add(mesh);
     Model& model = parts_->models.back();
+    const Clusters groups = clusters(mesh, cluster_vertices, cluster_faces);
+    model.triangles = gl::Buffer(groups.triangles);
     model.embedding.emplace(embedding);
+    model.shadow_culling.emplace(groups, mesh, embedding);
+    model.picture_culling.emplace(groups, mesh, embedding);
     model.reach = palpate::reach(mesh, embedding);
     const GLuint corners = model.embedding->vertex_array();
     enable(corners, openness_attribute, 1);
@@ -463,6 +485,11 @@ void Renderer::draw(const Picture& picture) {
 Image Renderer::image() const {
     parts_->context.make_current();
     return parts_->target.read(parts_->context);
+}
+
+Culled Renderer::culled(int mesh) const {
+    const Model& model = parts_->models.at(mesh);
+    return model.picture_culling ? model.picture_culling->count(parts_->context) : Culled{};
 }
 
 const gl::Context& Renderer::context() const { return parts_->context; }

@@ -18,6 +18,12 @@ struct Offscreen {
     int height = 720;
 };
 
+/// What was left out of a surface before it was mapped, and what was not.
+struct Culled {
+    std::size_t clusters = 0, clusters_drawn = 0;
+    std::size_t vertices = 0, vertices_drawn = 0;  // those that two clusters share count twice
+};
+
 /// What the pixels of an image mean.
 enum class Texels {
     colours,  // sRGB
@@ -54,6 +60,10 @@ class Renderer {
 
     /// The last frame that was drawn; black before the first.
     Image image() const;
+
+    /// What was left out of a mesh when it was last drawn by its nodes, not counting its shadow. Reads that
+    /// back, so this is for measurements.
+    Culled culled(int mesh) const;
 
     /// Names the driver, and counts its complaints.
     const gl::Context& context() const;

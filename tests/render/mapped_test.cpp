@@ -4,6 +4,7 @@
 #include "palpate/base/error.h"
 #include "palpate/gl/context.h"
 #include "palpate/render/gpu_embedding.h"
+#include "palpate/render/reach.h"
 #include "palpate/render/renderer.h"
 #include "tests/render/gpu.h"
 #include "tests/render/pictures.h"
