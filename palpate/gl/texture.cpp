@@ -1,5 +1,8 @@
 #include "palpate/gl/texture.h"
 
+#include <algorithm>
+#include <bit>
+
 namespace palpate::gl {
 namespace {
 
@@ -19,6 +22,15 @@ Texture::Texture(GLenum format, int width, int height, int samples)
         glTextureStorage2DMultisample(name(), samples, format, width, height, GL_TRUE);
     else
         glTextureStorage2D(name(), 1, format, width, height);
+}
+
+Texture Texture::with_mipmaps(GLenum format, int width, int height, const std::uint8_t* pixels) {
+    Texture made(Handle<TextureKind>(create(GL_TEXTURE_2D)), width, height);
+    const int levels = std::bit_width(unsigned(std::max(width, height)));
+    glTextureStorage2D(made.name(), levels, format, width, height);
+    glTextureSubImage2D(made.name(), 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+    glGenerateTextureMipmap(made.name());
+    return made;
 }
 
 }  // namespace palpate::gl

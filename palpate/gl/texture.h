@@ -1,6 +1,8 @@
 #pragma once
 #include "palpate/gl/handle.h"
 
+#include <cstdint>
+
 namespace palpate::gl {
 
 struct TextureKind {
@@ -15,11 +17,17 @@ class Texture {
     /// it.
     Texture(GLenum format, int width, int height, int samples = 1);
 
+    /// Filled, with smaller versions for when it is seen from afar. `pixels`: width × height times four
+    /// bytes, the lowest row first.
+    static Texture with_mipmaps(GLenum format, int width, int height, const std::uint8_t* pixels);
+
     GLuint name() const { return handle_.name(); }
     int width() const { return width_; }
     int height() const { return height_; }
 
  private:
+    Texture(Handle<TextureKind> handle, int width, int height)
+        : handle_(std::move(handle)), width_(width), height_(height) {}
     Handle<TextureKind> handle_;
     int width_;
     int height_;

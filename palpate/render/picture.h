@@ -12,6 +12,9 @@ namespace palpate {
 struct Look {
     vec3 colour = vec3(0.8f, 0.42f, 0.38f);  // linear red, green and blue, 0 to 1; living tissue by default
     float shine = 0.6f;                      // 0 as dull as chalk, 1 as wet as an eye
+    int colour_map = -1;  // a number from Renderer::add(image): colours that stand for `colour`; -1: none
+    int normal_map = -1;  // the same, of normals about the surface's own; -1: none
+    bool shows_normals = false;  // its colour is where its vertices' normals point now (2005, figure 6)
 };
 
 /// A mesh where it is now: where its vertices are, or if it was added with an embedding, where the nodes are
@@ -54,6 +57,9 @@ struct Picture {
     std::vector<Wires> wires = {};
     std::vector<Ball> balls = {};
     std::vector<Ground> grounds = {};
+    /// Whether what cannot be seen of surfaces that are mapped on the GPU is left out before that. No pixel
+    /// depends on it.
+    bool culls = true;
 };
 
 }  // namespace palpate

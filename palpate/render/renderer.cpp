@@ -2,10 +2,12 @@
 
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
+#include "palpate/render/culling.h"
 #include "palpate/render/gpu_embedding.h"
 #include "palpate/render/lighting.h"
 #include "palpate/render/openness.h"
 #include "palpate/render/programs.h"
+#include "palpate/render/reach.h"
 #include "palpate/render/shadow_map.h"
 #include "palpate/render/target.h"
 #include "palpate/render/unit_ball.h"
@@ -26,22 +28,28 @@ constexpr int shadow_size = 1024;    // pixels
 constexpr float wire_width = 1.3f;   // pixels
 constexpr float wire_lift = 0.005f;  // in radii of the things; see wires.vert
 constexpr float ball_shine = 0.4f;
+constexpr std::size_t cluster_vertices = 64, cluster_faces = 124;
+constexpr GLuint colour_map_unit = 4, normal_map_unit = 5;  // as in surface.frag
 
 // The attributes of placed.glsl and surface.vert.
 enum Attribute : GLuint {
     position_attribute,
     normal_attribute,
-    openness_attribute = GpuEmbedding::free_attribute
+    openness_attribute = GpuEmbedding::free_attribute,
+    uv_attribute
 };
 
 // What does not move of a mesh.
 struct Model {
     gl::Buffer triangles;
-    gl::Buffer openness;
+    gl::Buffer openness, uvs;
+    bool has_uvs = false;
     GLsizei corners = 0;
     std::size_t vertices = 0;
     bool closed = false;  // then nobody sees its triangles from behind
+    // Of one that was added with an embedding:
     std::optional<GpuEmbedding> embedding;
+    std::optional<Culling> shadow_culling, picture_culling;
     Reach reach;
 };
 
@@ -52,9 +60,13 @@ struct Moving {
     GpuNodes nodes = {};  // where it hangs on nodes: in these buffers, or whose they are
 };
 
-// How surfaces are drawn, for a picture or for a shadow map: tells the program that draws so what it shall
-// know.
-using Pass = std::function<const gl::Program&(const SurfacePrograms&)>;
+// How surfaces are drawn, for a picture or for a shadow map.
+struct Pass {
+    View view;
+    std::function<const gl::Program&(const SurfacePrograms&)> begin;  // tells the program what it shall know
+    std::optional<Culling> Model::*culling;
+    bool culls;
+};
 
 // Whether triangles lie on both sides of every edge and turn their fronts outwards.
 bool closed(const Mesh& mesh) {
@@ -73,6 +85,8 @@ Model model(const Mesh& mesh, gl::Buffer openness) {
     Model made;
     made.triangles = gl::Buffer(mesh.triangles);
     made.openness = std::move(openness);
+    made.has_uvs = !mesh.uvs.empty();
+    made.uvs = gl::Buffer(mesh.uvs);
     made.corners = static_cast<GLsizei>(3 * mesh.triangles.size());
     made.vertices = mesh.positions.size();
     made.closed = closed(mesh);
@@ -96,13 +110,41 @@ gl::VertexArray corners_of_surfaces() {
     enable(corners.name(), position_attribute, 3);
     enable(corners.name(), normal_attribute, 3);
     enable(corners.name(), openness_attribute, 1);
+    enable(corners.name(), uv_attribute, 2);
     return corners;
 }
 
 // What does not move of a model, for the vertices that `corners` describes.
 void attach(const Model& model, GLuint corners) {
     glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
+    glVertexArrayVertexBuffer(corners, uv_attribute, model.uvs.name(), 0, sizeof(vec2));
+    (model.has_uvs ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(corners, uv_attribute);
     glVertexArrayElementBuffer(corners, model.triangles.name());
+}
+
+gl::Sampler sampler_of_maps() {
+    gl::Sampler sampler;
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+        GLfloat most = 1;
+        glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &most);
+        glSamplerParameterf(sampler.name(), GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(most, 8.0f));
+    }
+    return sampler;
+}
+
+// OpenGL's rows go up.
+gl::Texture texture_of(const Image& image, Texels texels) {
+    check_size(image.width, image.height);
+    assert(image.pixels.size() == 4 * std::size_t(image.width) * std::size_t(image.height));
+    std::vector<std::uint8_t> rows;
+    rows.reserve(image.pixels.size());
+    const std::ptrdiff_t bytes = 4 * std::ptrdiff_t(image.width);
+    for (auto end = image.pixels.end(); end != image.pixels.begin(); end -= bytes)
+        rows.insert(rows.end(), end - bytes, end);
+    return gl::Texture::with_mipmaps(texels == Texels::colours ? GL_SRGB8_ALPHA8 : GL_RGBA8, image.width,
+                                     image.height, rows.data());
 }
 
 std::vector<vec4> with_room(std::span<const vec3> vectors) {
@@ -157,6 +199,8 @@ struct Renderer::Parts {
 
     gl::VertexArray surface_corners = corners_of_surfaces();
     gl::VertexArray no_corners;  // for shaders that make their own
+    std::vector<gl::Texture> maps;
+    gl::Sampler map_sampler = sampler_of_maps();
     std::vector<Model> models;
     std::vector<Moving> moving;
     Model ball_model;
@@ -176,6 +220,8 @@ struct Renderer::Parts {
     void draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass);
     void draw_balls(const std::vector<Ball>& balls, const Pass& pass) const;
     void bind(const Model& model, const Moving& shape) const;
+    void set_look(const gl::Program& program, const Look& look, const Model& model,
+                  const Moving& shape) const;
     void draw_triangles(const Model& model) const;
     void draw_wires(const Wires& some, const View& seen, const Extent& things);
     void draw_ground(const Ground& one, const View& seen, const Extent& things) const;
@@ -201,10 +247,11 @@ void Renderer::Parts::draw(const Picture& picture) {
     const Extent things = extent(picture, around);
     const View seen = view(picture.camera, target.aspect(), reach(picture, things));
     const Lighting light = lighting(picture, around, shadow_size);
-    const Pass shown = [&](const SurfacePrograms& some) -> const gl::Program& {
+    auto begin = [&](const SurfacePrograms& some) -> const gl::Program& {
         tell(some.shown, seen, light, picture.balls.size());
         return some.shown;
     };
+    const Pass shown{seen, begin, &Model::picture_culling, picture.culls};
     tell(programs.ground, seen, light, light.round.size());
 
     upload(picture.surfaces);
@@ -255,10 +302,12 @@ void Renderer::Parts::upload(const Surface& surface, Moving& to) const {
 }
 
 void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light) {
-    const Pass depth = [&](const SurfacePrograms& some) -> const gl::Program& {
+    auto begin = [&](const SurfacePrograms& some) -> const gl::Program& {
         some.depth.set("to_clip", light.to_clip);
         return some.depth;
     };
+    const View from_light{light.to_clip, vec4(light.to_light, 0), vec3(0)};
+    const Pass depth{from_light, begin, &Model::shadow_culling, picture.culls};
     shadow.begin();
     draw_surfaces(picture.surfaces, depth);
     draw_balls(picture.balls, depth);
@@ -283,22 +332,30 @@ const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const M
 void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const Model& model = models[surfaces[i].mesh];
-        const gl::Program& program = pass(programs_for(model, moving[i]));
+        const gl::Program& program = pass.begin(programs_for(model, moving[i]));
         bind(model, moving[i]);
+        const bool culls = pass.culls && moving[i].nodes.positions != 0;
+        const std::optional<Culling>& culling = model.*pass.culling;
+        if (culls) culling->find(pass.view, model.closed, moving[i].nodes.width > 0);
         program.use();
         program.set("centre", vec3(0));
         program.set("size", 1.0f);
-        program.set("look", surfaces[i].look.colour);
-        program.set("shine", surfaces[i].look.shine);
-        draw_triangles(model);
+        set_look(program, surfaces[i].look, model, moving[i]);
+        // Fragments are what costs, and half of them would be the far side's.
+        if (model.closed) glEnable(GL_CULL_FACE);
+        if (culls)
+            culling->draw();
+        else
+            draw_triangles(model);
+        glDisable(GL_CULL_FACE);
     }
 }
 
 void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pass) const {
-    const gl::Program& program = pass(programs.placed);
+    const gl::Program& program = pass.begin(programs.placed);
     bind(ball_model, ball_shape);
     program.use();
-    program.set("shine", ball_shine);
+    set_look(program, {.shine = ball_shine}, ball_model, ball_shape);
     for (const Ball& ball : balls) {
         program.set("centre", ball.centre);
         program.set("size", ball.radius);
@@ -316,11 +373,26 @@ void Renderer::Parts::bind(const Model& model, const Moving& shape) const {
     glBindVertexArray(corners);
 }
 
+void Renderer::Parts::set_look(const gl::Program& program, const Look& look, const Model& model,
+                               const Moving& shape) const {
+    const bool has_tangents = shape.nodes.positions != 0 && model.embedding->has_tangents();
+    const bool coloured = look.colour_map >= 0 && model.has_uvs;
+    const bool bumpy = look.normal_map >= 0 && model.has_uvs && has_tangents;
+    program.set("look", look.colour);
+    program.set("shine", look.shine);
+    program.set("coloured", coloured);
+    program.set("bumpy", bumpy);
+    program.set("shows_normals", look.shows_normals);
+    auto lay = [&](GLuint unit, int map) {
+        glBindTextureUnit(unit, maps.at(map).name());
+        glBindSampler(unit, map_sampler.name());
+    };
+    if (coloured) lay(colour_map_unit, look.colour_map);
+    if (bumpy) lay(normal_map_unit, look.normal_map);
+}
+
 void Renderer::Parts::draw_triangles(const Model& model) const {
-    // Fragments are what costs, and half of them would be the far side's.
-    if (model.closed) glEnable(GL_CULL_FACE);
     glDrawElements(GL_TRIANGLES, model.corners, GL_UNSIGNED_INT, nullptr);
-    glDisable(GL_CULL_FACE);
 }
 
 // Twice: where nothing hides the lines, and then faintly the others.
@@ -386,12 +458,23 @@ int Renderer::add(const Mesh& mesh) {
 int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
     const int number = add(mesh);
     Model& model = parts_->models.back();
+    const Clusters groups = clusters(mesh, cluster_vertices, cluster_faces);
+    model.triangles = gl::Buffer(groups.triangles);
     model.embedding.emplace(embedding);
+    model.shadow_culling.emplace(groups, mesh, embedding);
+    model.picture_culling.emplace(groups, mesh, embedding);
     model.reach = palpate::reach(mesh, embedding);
     const GLuint corners = model.embedding->vertex_array();
     enable(corners, openness_attribute, 1);
+    enable(corners, uv_attribute, 2);
     attach(model, corners);
     return number;
+}
+
+int Renderer::add(const Image& image, Texels texels) {
+    parts_->context.make_current();
+    parts_->maps.push_back(texture_of(image, texels));
+    return static_cast<int>(parts_->maps.size()) - 1;
 }
 
 void Renderer::draw(const Picture& picture) {
@@ -402,6 +485,11 @@ void Renderer::draw(const Picture& picture) {
 Image Renderer::image() const {
     parts_->context.make_current();
     return parts_->target.read(parts_->context);
+}
+
+Culled Renderer::culled(int mesh) const {
+    const Model& model = parts_->models.at(mesh);
+    return model.picture_culling ? model.picture_culling->count(parts_->context) : Culled{};
 }
 
 const gl::Context& Renderer::context() const { return parts_->context; }

@@ -18,6 +18,18 @@ struct Offscreen {
     int height = 720;
 };
 
+/// What was left out of a surface before it was mapped, and what was not.
+struct Culled {
+    std::size_t clusters = 0, clusters_drawn = 0;
+    std::size_t vertices = 0, vertices_drawn = 0;  // those that two clusters share count twice
+};
+
+/// What the pixels of an image mean.
+enum class Texels {
+    colours,  // sRGB
+    normals   // red along u, green along v, blue out of the surface; 128 is 0, and 255 is 1
+};
+
 /// Draws pictures. Move-only. Every call makes the renderer's context current on its thread.
 class Renderer {
  public:
@@ -36,12 +48,22 @@ class Renderer {
     /// The same for a mesh that hangs on nodes: its vertices are mapped where they are drawn, on the GPU.
     int add(const Mesh& mesh, const Embedding& embedding);
 
+    /// Keeps an image to be laid over surfaces whose mesh has texture coordinates; u goes to the right in it
+    /// and v upwards, and beyond 0 and 1 it is repeated. A normal map needs a surface that was added with an
+    /// embedding which has tangents, and that is drawn by its nodes; over others nothing is laid. Returns the
+    /// number by which Look names it. Throws Error if the driver has no images of that size.
+    int add(const Image& image, Texels texels = Texels::colours);
+
     /// Draws one frame. Same picture, same pixels. Odd pictures are drawn as well as they can be: nothing in
     /// them, a camera that looks at its own eye, points that are not finite.
     void draw(const Picture& picture);
 
     /// The last frame that was drawn; black before the first.
     Image image() const;
+
+    /// What was left out of a mesh when it was last drawn by its nodes, not counting its shadow. Reads that
+    /// back, so this is for measurements.
+    Culled culled(int mesh) const;
 
     /// Names the driver, and counts its complaints.
     const gl::Context& context() const;

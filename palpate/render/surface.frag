@@ -3,12 +3,20 @@
 
 in vec3 place;
 in vec3 upright;
+in vec4 along_u;  // the tangent, and whether v runs along the normal × it, 1, or against, -1
+in vec2 uv;
 in float sky;  // the share of it that the place sees
+
+layout(binding = 4) uniform sampler2D colour_map;
+layout(binding = 5) uniform sampler2D normal_map;
 
 uniform vec4 eye;  // see View
 uniform vec3 to_light;
 uniform vec3 look;
 uniform float shine;
+uniform bool coloured;       // whether there is a colour map,
+uniform bool bumpy;          // and a normal map
+uniform bool shows_normals;  // see Look
 
 out vec4 colour;
 
@@ -16,10 +24,23 @@ vec3 lit(vec3 normal, vec3 to_eye, vec3 look, float shine, float sky, float shar
 float key_share(vec3 place, vec3 normal, float softness, int taps);
 vec3 shown(vec3 light);
 
+// What the normal map says, about a normal on the front side.
+vec3 bumped(vec3 normal) {
+    vec3 tangent = along_u.xyz - dot(along_u.xyz, normal) * normal;
+    if (!(dot(tangent, tangent) > 1e-8)) return normal;
+    tangent = normalize(tangent);
+    vec3 across = sign(along_u.w) * cross(normal, tangent);
+    vec3 bump = (texture(normal_map, uv).xyz * 255 - 128) / 127;
+    return normalize(bump.x * tangent + bump.y * across + max(bump.z, 0.05) * normal);
+}
+
 void main() {
     vec3 to_eye = normalize(eye.xyz - eye.w * place);
-    vec3 normal = gl_FrontFacing ? upright : -upright;
-    normal = dot(normal, normal) > 0 ? normalize(normal) : to_eye;
+    vec3 smooth_normal = dot(upright, upright) > 0 ? normalize(upright) : gl_FrontFacing ? to_eye : -to_eye;
+    vec3 normal = bumpy ? bumped(smooth_normal) : smooth_normal;
+    if (!gl_FrontFacing) normal = -normal;
+    vec3 own = coloured ? texture(colour_map, uv).rgb : look;
+    if (shows_normals) own = pow(0.5 + 0.5 * smooth_normal, vec3(2.2));  // so that the screen shows them evenly
     float share = dot(normal, to_light) > 0 ? key_share(place, normal, 2.5, 10) : 0;
-    colour = vec4(shown(lit(normal, to_eye, look, shine, sky, share)), 1);
+    colour = vec4(shown(lit(normal, to_eye, own, shine, sky, share)), 1);
 }

@@ -13,15 +13,19 @@ constexpr int samples = 4;
 
 // Checked before anything is made, so that no texture of an impossible size is asked for.
 int checked_width(int width, int height) {
+    check_size(width, height);
+    return width;
+}
+
+}  // namespace
+
+void check_size(int width, int height) {
     GLint most = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
     if (width < 1 || height < 1 || width > most || height > most)
         throw Error(fmt::format("no image of {} x {} pixels can be drawn", width, height), "OpenGL",
                     fmt::format("choose 1 to {} pixels each way", most));
-    return width;
 }
-
-}  // namespace
 
 Target::Target(int width, int height)
     : samples_(GL_SRGB8_ALPHA8, checked_width(width, height), height, samples),

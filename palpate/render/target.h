@@ -5,6 +5,9 @@
 
 namespace palpate {
 
+/// Throws Error if the driver has no images of that size, in pixels.
+void check_size(int width, int height);
+
 /// An image in the GPU's memory to draw into, with four samples a pixel for smooth edges. Light in it is
 /// linear; the GPU turns it into sRGB where it stores it.
 class Target {

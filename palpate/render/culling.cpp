@@ -1,0 +1,245 @@
+#include "palpate/render/culling.h"
+
+#include "palpate/render/gpu_embedding.h"
+#include "palpate/render/reach.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+
+namespace palpate {
+namespace {
+
+const char* cell_parts_glsl =
+#include "embedded/cell_parts.glsl.h"
+    ;
+const char* cluster_glsl =
+#include "embedded/cluster.glsl.h"
+    ;
+const char* cull_comp =
+#include "embedded/cull.comp.h"
+    ;
+const char* frame_parts_glsl =
+#include "embedded/frame_parts.glsl.h"
+    ;
+const char* triangle_parts_glsl =
+#include "embedded/triangle_parts.glsl.h"
+    ;
+
+constexpr GLuint group = 64;    // as in cull.comp
+constexpr float widest = 0.1f;  // the cosine of half the widest cone of normals that is made use of
+
+// As shaders read them: see the GLSL for what they mean.
+struct Cluster {
+    int parts_end = 0;
+    vec3 axis = vec3(0);
+    float cosine = 0, sine = 0;
+    float sharpness = 0, smallness = 0;
+};
+struct CellPart {
+    std::array<int, 8> nodes;
+    vec3 low, high, origin;
+};
+struct TrianglePart {
+    std::array<int, 3> nodes;
+    vec2 low, high;
+    float reach;
+};
+struct FramePart {
+    std::array<int, 3> frames;
+    vec2 low, high;
+    std::array<vec3, 3> arm, spread;
+};
+struct Command {
+    GLuint count, instances, first_index;
+    GLint base_vertex;
+    GLuint base_instance;
+};
+static_assert(sizeof(Cluster) == 8 * 4 && sizeof(CellPart) == 17 * 4 && sizeof(TrianglePart) == 8 * 4 &&
+              sizeof(FramePart) == 25 * 4);
+
+using Members = std::vector<unsigned>;  // numbers of vertices
+
+Members members(std::span<const uvec3> triangles) {
+    std::set<unsigned> all;
+    for (uvec3 t : triangles) all.insert({t.x, t.y, t.z});
+    return {all.begin(), all.end()};
+}
+
+std::span<const uvec3> triangles_of(const Clusters& clusters, std::size_t c) {
+    const std::size_t begin = c > 0 ? clusters.ends[c - 1] : 0;
+    return std::span(clusters.triangles).subspan(begin, clusters.ends[c] - begin);
+}
+
+// The members of a cluster by what they hang on.
+template <class Hangs>
+auto by_nodes(const Members& members, Hangs hangs) {
+    std::map<decltype(hangs(0u)), Members> groups;
+    for (unsigned v : members) groups[hangs(v)].push_back(v);
+    return groups;
+}
+
+// The cone of the triangles' normals, of vertices at these places. Left empty if they look too many ways.
+void make_cone(std::span<const uvec3> triangles, const std::map<unsigned, vec3>& places, Cluster& cluster) {
+    std::vector<vec3> normals;
+    vec3 sum(0);
+    float sharpness = 0, smallness = 0;
+    for (uvec3 t : triangles) {
+        const vec3 a = places.at(t.x), b = places.at(t.y), c = places.at(t.z), area = cross(b - a, c - a);
+        std::array<float, 3> sides = {distance(a, b), distance(b, c), distance(c, a)};
+        std::sort(sides.begin(), sides.end());
+        const float twice = length(area);
+        if (!(twice > 0)) return;
+        sharpness = std::max(sharpness, (sides[0] + sides[1]) / twice);
+        smallness = std::max(smallness, 1 / twice);
+        normals.push_back(area / twice);
+        sum += normals.back();
+    }
+    const vec3 axis = unit(sum, vec3(0));
+    float cosine = 1;
+    for (vec3 n : normals) cosine = std::min(cosine, dot(n, axis) - 1e-4f);
+    if (!(cosine > widest)) return;
+    cluster.axis = axis;
+    cluster.cosine = cosine;
+    cluster.sine = std::sqrt(1 - cosine * cosine);
+    cluster.sharpness = sharpness;
+    cluster.smallness = smallness;
+}
+
+// Clusters and their parts, in the making.
+template <class Part>
+struct Made {
+    std::vector<Cluster> clusters;
+    std::vector<Part> parts;
+};
+
+Made<CellPart> make(const Clusters& clusters, const Mesh& mesh, const std::vector<InCell>& vertices) {
+    Made<CellPart> made;
+    const float width = cell_width(mesh, vertices);
+    const vec3 middle = bounds(mesh).centre();
+    for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
+        const auto triangles = triangles_of(clusters, c);
+        std::map<unsigned, vec3> places;  // of vertices, in cells
+        for (const auto& [nodes, group] :
+             by_nodes(members(triangles), [&](unsigned v) { return vertices[v].nodes; })) {
+            Bounds box;
+            for (unsigned v : group) box.include(vertices[v].at);
+            const unsigned first = group.front();
+            const vec3 origin =
+                width > 0 ? (mesh.positions[first] - middle) / width - vertices[first].at : vec3(0);
+            for (unsigned v : group) places[v] = origin + vertices[v].at;
+            made.parts.push_back({nodes, box.low, box.high, origin});
+        }
+        Cluster& cluster = made.clusters.emplace_back(Cluster{int(made.parts.size())});
+        make_cone(triangles, places, cluster);
+    }
+    return made;
+}
+
+// Of the second and third weight; the first is what they leave.
+void include(const vec3& weights, vec2& low, vec2& high) {
+    low = min(low, vec2(weights.y, weights.z));
+    high = max(high, vec2(weights.y, weights.z));
+}
+
+Made<TrianglePart> make(const Clusters& clusters, const Mesh&, const std::vector<OnTriangle>& vertices) {
+    Made<TrianglePart> made;
+    for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
+        for (const auto& [nodes, group] :
+             by_nodes(members(triangles_of(clusters, c)), [&](unsigned v) { return vertices[v].nodes; })) {
+            TrianglePart part{nodes, vec2(1e30f), vec2(-1e30f), 0};
+            for (unsigned v : group) {
+                include(vertices[v].weights, part.low, part.high);
+                part.reach = std::max(part.reach, length(vertices[v].offset));
+            }
+            made.parts.push_back(part);
+        }
+        made.clusters.push_back({int(made.parts.size())});
+    }
+    return made;
+}
+
+Made<FramePart> make(const Clusters& clusters, const Mesh&, const Framed& framed) {
+    Made<FramePart> made;
+    for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
+        for (const auto& [frames, group] : by_nodes(members(triangles_of(clusters, c)),
+                                                    [&](unsigned v) { return framed.vertices[v].frames; })) {
+            FramePart part{frames, vec2(1e30f), vec2(-1e30f), {}, {}};
+            std::array<Bounds, 3> arms;
+            for (unsigned v : group) {
+                include(framed.vertices[v].weights, part.low, part.high);
+                for (std::size_t k = 0; k < 3; ++k) arms[k].include(framed.vertices[v].arms[k]);
+            }
+            for (std::size_t k = 0; k < 3; ++k) {
+                part.arm[k] = arms[k].centre();
+                part.spread[k] = 0.5f * arms[k].size();
+            }
+            made.parts.push_back(part);
+        }
+        made.clusters.push_back({int(made.parts.size())});
+    }
+    return made;
+}
+
+gl::Program finder(const Embedding& embedding, bool in_textures) {
+    const char* kinds[] = {cell_parts_glsl, triangle_parts_glsl, frame_parts_glsl};
+    const std::string text = "#version 450 core\n" + nodes_shader(in_textures) + cluster_glsl +
+                             kinds[embedding.vertices.index()] + cull_comp;
+    return gl::Program({{GL_COMPUTE_SHADER, "cull.comp", text}});
+}
+
+}  // namespace
+
+Culling::Culling(const Clusters& clusters, const Mesh& mesh, const Embedding& embedding)
+    : from_buffers_(finder(embedding, false)), from_textures_(finder(embedding, true)) {
+    std::visit(
+        [&](const auto& vertices) {
+            const auto made = make(clusters, mesh, vertices);
+            parts_ = gl::Buffer(made.parts);
+            clusters_ = gl::Buffer(made.clusters);
+        },
+        embedding.vertices);
+    std::vector<Command> commands;
+    for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
+        const auto triangles = triangles_of(clusters, c);
+        const auto first = GLuint(3 * (clusters.ends[c] - triangles.size()));
+        commands.push_back({GLuint(3 * triangles.size()), 1, first, 0, 0});
+        vertices_.push_back(members(triangles).size());
+    }
+    commands_ = gl::Buffer(commands);
+}
+
+void Culling::find(const View& view, bool hides_backs, bool in_textures) const {
+    const gl::Program& program = in_textures ? from_textures_ : from_buffers_;
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, parts_.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, clusters_.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, commands_.name());
+    program.set("to_clip", view.to_clip);
+    program.set("eye", view.eye);
+    program.set("hides_backs", hides_backs);
+    program.use();
+    glDispatchCompute(GLuint(vertices_.size() + group - 1) / group, 1, 1);
+    glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void Culling::draw() const {
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, GLsizei(vertices_.size()), 0);
+}
+
+Culled Culling::count(const gl::Context& context) const {
+    std::vector<Command> commands(vertices_.size());
+    context.read(commands_.name(), std::as_writable_bytes(std::span(commands)));
+    Culled culled{.clusters = commands.size()};
+    for (std::size_t c = 0; c < commands.size(); ++c) {
+        culled.vertices += vertices_[c];
+        culled.clusters_drawn += commands[c].instances;
+        culled.vertices_drawn += commands[c].instances * vertices_[c];
+    }
+    return culled;
+}
+
+}  // namespace palpate
