@@ -11,3 +11,4 @@ void add_import(CLI::App& app);
 void add_info(CLI::App& app);
 void add_list(CLI::App& app);
 void add_bench(CLI::App& app);
+void add_doctor(CLI::App& app);

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     add_info(app);
     add_list(app);
     add_bench(app);
+    add_doctor(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {

@@ -7,6 +7,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,8 @@ bool has_current_context() {
     return current && current() != nullptr;
 }
 
+std::string in_words(int version) { return fmt::format("{}.{}", version / 10, version % 10); }
+
 bool is_software(EGLDeviceEXT device) {
     const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
     return extensions &&
@@ -66,6 +69,19 @@ std::vector<EGLDisplay> displays() {
     }
     cards.insert(cards.end(), rest.begin(), rest.end());
     return cards;
+}
+
+// The newest version of core OpenGL that a display has; 0 if it has none of any use.
+int newest(EGLDisplay display) {
+    eglBindAPI(EGL_OPENGL_API);
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2, EGL_NONE};
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    if (context == EGL_NO_CONTEXT) return 0;
+    const bool usable = eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+    const int version = usable ? epoxy_gl_version() : 0;
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+    return version;
 }
 
 // A debug context, because only that is sure to report errors; we make few calls, so it costs nothing to
@@ -98,6 +114,21 @@ std::string text(GLenum what) {
     return bytes ? reinterpret_cast<const char*>(bytes) : "unknown";
 }
 
+template <class Number = int>
+Number number(GLenum what) {
+    GLint64 value = 0;
+    glGetInteger64v(what, &value);
+    return static_cast<Number>(value);
+}
+
+// How many textures of floats can be drawn into at once.
+int float_targets() {
+    GLint can = GL_FALSE;
+    glGetInternalformativ(GL_TEXTURE_2D, GL_RGBA32F, GL_FRAMEBUFFER_RENDERABLE, 1, &can);
+    if (can == GL_NONE) return 0;
+    return std::min(number(GL_MAX_DRAW_BUFFERS), number(GL_MAX_COLOR_ATTACHMENTS));
+}
+
 }  // namespace
 
 // On the heap, so that the driver knows where to report errors, wherever the Context moves.
@@ -106,7 +137,7 @@ struct Context::Parts {
     // Never terminated: all contexts of the process share a display, and eglTerminate would end them all.
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
-    std::string renderer, version, first_error;
+    std::string renderer, version, vendor, egl, first_error;
     int errors = 0;
     long reads = 0;
 
@@ -131,8 +162,8 @@ std::unique_ptr<Context::Parts> Context::Parts::adopt() {
         throw Error("no context is current on this thread", where, "make the window's context current first");
     parts->name();
     if (const int version = epoxy_gl_version(); version < oldest)
-        throw Error(fmt::format("this context is of version {}.{}, and {}.{} core is needed", version / 10,
-                                version % 10, oldest / 10, oldest % 10),
+        throw Error(fmt::format("this context is of version {}, and {} core is needed", in_words(version),
+                                in_words(oldest)),
                     where, "ask the window for a newer one, or update the graphics card's driver");
     return parts;
 }
@@ -141,6 +172,8 @@ std::unique_ptr<Context::Parts> Context::Parts::make() {
     auto parts = std::make_unique<Parts>();
     parts->find();
     parts->name();
+    parts->egl = fmt::format("{}, {}", eglQueryString(parts->display, EGL_VERSION),
+                             eglQueryString(parts->display, EGL_VENDOR));
     parts->listen();
     bind_one_pixel();
     return parts;
@@ -149,18 +182,24 @@ std::unique_ptr<Context::Parts> Context::Parts::make() {
 void Context::Parts::name() {
     renderer = text(GL_RENDERER);
     version = text(GL_VERSION);
+    vendor = text(GL_VENDOR);
 }
 
 void Context::Parts::find() {
     require_libraries();
-    bool any = false;
-    for (EGLDisplay candidate : displays()) {
-        if (!eglInitialize(candidate, nullptr, nullptr)) continue;
-        any = true;
-        if (open(candidate)) break;
-    }
-    if (!any) throw Error("no display for drawing without a window", where, remedy);
-    if (context == EGL_NO_CONTEXT) throw Error("no driver has version 4.5 core", where, remedy);
+    std::vector<EGLDisplay> usable;
+    for (EGLDisplay candidate : displays())
+        if (eglInitialize(candidate, nullptr, nullptr)) usable.push_back(candidate);
+    for (EGLDisplay candidate : usable)
+        if (open(candidate)) return;
+    if (usable.empty()) throw Error("no display for drawing without a window", where, remedy);
+    int found = 0;
+    for (EGLDisplay candidate : usable) found = std::max(found, newest(candidate));
+    if (found == 0)
+        throw Error(fmt::format("no driver has version {} core", in_words(oldest)), where, remedy);
+    throw Error(
+        fmt::format("the driver has version {}, and {} core is needed", in_words(found), in_words(oldest)),
+        where, "update the graphics card's driver, or install libgl1-mesa-dri of 2020 or later");
 }
 
 Context::Parts::~Parts() {
@@ -234,6 +273,31 @@ long Context::reads() const { return parts_->reads; }
 
 const std::string& Context::renderer() const { return parts_->renderer; }
 const std::string& Context::version() const { return parts_->version; }
+const std::string& Context::vendor() const { return parts_->vendor; }
+const std::string& Context::egl() const { return parts_->egl; }
+
+bool Context::software() const {
+    for (const char* name : {"llvmpipe", "softpipe", "lavapipe", "SwiftShader", "Software Rasterizer"})
+        if (parts_->renderer.find(name) != std::string::npos) return true;
+    return false;
+}
+
+Limits Context::limits() const {
+    make_current();
+    return {.buffer_texels = number<long>(GL_MAX_TEXTURE_BUFFER_SIZE),
+            .storage_bytes = number<long>(GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
+            .vertex_storage_buffers = number(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS),
+            .compute_storage_buffers = number(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
+            .vertex_textures = number(GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS),
+            .fragment_textures = number(GL_MAX_TEXTURE_IMAGE_UNITS),
+            .compute_textures = number(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS),
+            .captured_buffers = number(GL_MAX_TRANSFORM_FEEDBACK_SEPARATE_ATTRIBS),
+            .float_targets = float_targets(),
+            .texture_side = number(GL_MAX_TEXTURE_SIZE),
+            .group = number(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS),
+            .shared_bytes = number(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE)};
+}
+
 int Context::errors() const { return parts_->errors; }
 const std::string& Context::first_error() const { return parts_->first_error; }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace palpate {
 namespace {
@@ -21,7 +22,7 @@ TEST(Command, UsageErrorsEndWithTwo) {
          {"", "fly", "run", "run box --frames many", "run box --size 12", "run box --fast", "list",
           "import x.ply", "run box --frames 1 --steps 1", "run box --until-rest soon",
           "run box --until-rest none", "run box --until-rest --frames 3", "run box --threads 0",
-          "run box --threads many", "bench sing", "bench embed --rounds 0"})
+          "run box --threads many", "bench sing", "bench embed --rounds 0", "doctor me"})
         EXPECT_EQ(palpate(arguments).status, 2) << arguments;
     EXPECT_EQ(palpate("--help").status, 0);
     EXPECT_EQ(palpate("run --help").status, 0);
@@ -60,6 +61,51 @@ TEST(Command, TimesItself) {
     EXPECT_EQ(outcome.status, 0) << outcome.said;
     EXPECT_NE(outcome.said.find("| 128², 1 thread |"), std::string::npos) << outcome.said;
     EXPECT_NE(read_text(scratch / "b.json").find("links_per_second"), std::string::npos);
+}
+
+// What the doctor says where these variables are set, and that it says it with status 0.
+nlohmann::json diagnosis(const std::string& variables) {
+    const Outcome outcome = shell("{ " + variables + " " PALPATE_COMMAND " doctor --json; } 2>/dev/null");
+    EXPECT_EQ(outcome.status, 0) << outcome.said;
+    return nlohmann::json::parse(outcome.said, nullptr, false);
+}
+
+TEST(Command, TheDoctorLooksAtEveryPart) {
+    const nlohmann::json found = diagnosis("PALPATE_DATA=/");
+    for (const char* part :
+         {"opengl", "reference", "cpu", "feedback", "fragment", "compute", "mapping", "films", "data"}) {
+        ASSERT_TRUE(found.contains(part)) << part << found;
+        EXPECT_EQ(found[part]["ok"], found[part]["problem"] == "") << part << found;
+    }
+    for (const char* part : {"reference", "cpu", "data"}) EXPECT_TRUE(found[part]["ok"]) << found[part];
+    EXPECT_FALSE(diagnosis("PALPATE_DATA=/no-such-folder")["data"]["ok"]);
+    const Outcome text = palpate("doctor");
+    EXPECT_EQ(text.status, 0);
+    EXPECT_NE(text.said.find("reference"), std::string::npos) << text.said;
+    if (!found["opengl"]["ok"]) GTEST_SKIP() << "OpenGL is not available";
+    const std::string renderer = found["driver"]["renderer"];
+    EXPECT_NE(text.said.find(renderer), std::string::npos) << text.said;
+    EXPECT_TRUE(found["driver"]["software"].is_boolean());
+    for (const char* part : {"feedback", "fragment", "compute", "mapping"})
+        EXPECT_FALSE(found[part]["needs"].empty()) << part;
+    EXPECT_TRUE(found["mapping"]["ok"]) << found["mapping"];
+}
+
+TEST(Command, TheDoctorSaysWhatIsMissing) {
+    for (const char* variables :
+         {"__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json", "LIBGL_DRIVERS_PATH=/nowhere"}) {
+        const nlohmann::json found = diagnosis(variables);
+        EXPECT_FALSE(found["opengl"]["ok"]) << found;
+        EXPECT_TRUE(found["driver"].is_null()) << found;
+        EXPECT_NE(found["opengl"]["problem"].dump().find("; install libegl1"), std::string::npos) << found;
+        for (const char* part : {"feedback", "fragment", "compute", "mapping"})
+            EXPECT_FALSE(found[part]["ok"]) << found;
+        EXPECT_TRUE(found["cpu"]["ok"]) << found;
+    }
+    if (!diagnosis("")["driver"].value("software", false))
+        GTEST_SKIP() << "Mesa's software driver is not available";
+    const std::string old = diagnosis("MESA_GL_VERSION_OVERRIDE=3.3")["opengl"]["problem"];
+    EXPECT_NE(old.find("version 3.3, and 4.5 core is needed in OpenGL; update"), std::string::npos) << old;
 }
 
 TEST(Command, RunsUntilRest) {

@@ -5,11 +5,16 @@
 #include "palpate/gl/program.h"
 #include "palpate/gl/texture.h"
 
+#include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -172,20 +177,170 @@ TEST_F(Gl, TexturesCanBeDrawnInto) {
     }
 }
 
-// In a process of its own, because EGL looks for its drivers once.
+TEST_F(Gl, SaysWhatItCanTake) {
+    const Limits limits = context_->limits();
+    // What OpenGL 4.5 promises.
+    EXPECT_GE(limits.buffer_texels, 65536);
+    EXPECT_GE(limits.storage_bytes, 1 << 24);
+    EXPECT_GE(limits.vertex_storage_buffers, 0);
+    EXPECT_GE(limits.compute_storage_buffers, 8);
+    EXPECT_GE(limits.vertex_textures, 16);
+    EXPECT_GE(limits.fragment_textures, 16);
+    EXPECT_GE(limits.compute_textures, 16);
+    EXPECT_GE(limits.captured_buffers, 4);
+    EXPECT_GE(limits.float_targets, 8);
+    EXPECT_GE(limits.texture_side, 16384);
+    EXPECT_GE(limits.group, 1024);
+    EXPECT_GE(limits.shared_bytes, 32768);
+    EXPECT_FALSE(context_->vendor().empty());
+    EXPECT_TRUE(context_->egl().starts_with("1.")) << context_->egl();
+    EXPECT_EQ(context_->software(), context_->renderer().find("llvmpipe") != std::string::npos);
+}
+
+TEST_F(Gl, ReadsAreCounted) {
+    const std::array values{1.0f, 2.0f, 3.0f, 4.0f};
+    Buffer buffer(values);
+    Texture texture(GL_RGBA32F, 1, 1);
+    glTextureSubImage2D(texture.name(), 0, 0, 0, 1, 1, GL_RGBA, GL_FLOAT, values.data());
+    const long before = context_->reads();
+    std::array<float, 2> first{};
+    context_->read(buffer.name(), std::as_writable_bytes(std::span(first)));
+    EXPECT_EQ(first, (std::array{1.0f, 2.0f}));
+    std::array<float, 4> texel{};
+    context_->read_texture(texture.name(), GL_RGBA, GL_FLOAT, std::as_writable_bytes(std::span(texel)));
+    EXPECT_EQ(texel, values);
+    EXPECT_EQ(context_->reads(), before + 2);
+}
+
+// What an Error says that this throws; empty if it throws none.
+template <class Do>
+std::string error_of(const Do& act) {
+    try {
+        act();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+void expect_one_line(const std::string& what, std::initializer_list<const char*> words) {
+    for (const char* word : words) EXPECT_NE(what.find(word), std::string::npos) << word << ": " << what;
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    EXPECT_NE(what.find("in OpenGL; "), std::string::npos) << what;  // and a remedy
+}
+
+// A context that somebody else has made, current for as long as it lives.
+class Foreign {
+ public:
+    explicit Foreign(int version, EGLDisplay display = eglGetCurrentDisplay()) : display_(display) {
+        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                     version / 10,
+                                     EGL_CONTEXT_MINOR_VERSION,
+                                     version % 10,
+                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                     EGL_NONE};
+        eglBindAPI(EGL_OPENGL_API);
+        context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+        current_ = eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+    }
+    ~Foreign() {
+        leave();
+        eglDestroyContext(display_, context_);
+    }
+    void leave() const { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+    bool current() const { return current_ && eglGetCurrentContext() == context_; }
+
+ private:
+    EGLDisplay display_;
+    EGLContext context_ = EGL_NO_CONTEXT;
+    bool current_ = false;
+};
+
+TEST_F(Gl, AForeignContextIsAdoptedAndStaysItsOwners) {
+    {
+        Foreign foreign(45);
+        ASSERT_TRUE(foreign.current());
+        {
+            Context adopted = Context::adopt();
+            EXPECT_EQ(adopted.renderer(), context_->renderer());
+            EXPECT_EQ(adopted.egl(), "");
+            adopted.make_current();
+            Buffer buffer(std::array{5.0f});
+            std::array<float, 1> back{};
+            adopted.read(buffer.name(), std::as_writable_bytes(std::span(back)));
+            EXPECT_EQ(back[0], 5.0f);
+            EXPECT_EQ(adopted.reads(), 1);
+            EXPECT_EQ(context_->reads(), 0);
+        }
+        EXPECT_TRUE(foreign.current());
+        Buffer works(std::array{6.0f});
+        EXPECT_EQ(contents(works, 1), std::vector{6.0f});
+    }
+    context_->make_current();
+}
+
+TEST_F(Gl, WhereNoContextIsCurrentNoneIsAdopted) {
+    Foreign(45).leave();
+    expect_one_line(error_of([] { Context::adopt(); }), {"no context is current", "make the window's"});
+    context_->make_current();
+}
+
+TEST_F(Gl, ALostContextIsSaidInOneLine) {
+    const auto sound = epoxy_glGetGraphicsResetStatus;
+    epoxy_glGetGraphicsResetStatus = []() -> GLenum { return GL_UNKNOWN_CONTEXT_RESET; };
+    const std::string what = error_of([&] { context_->make_current(); });
+    epoxy_glGetGraphicsResetStatus = sound;
+    expect_one_line(what, {"dropped the context", "lost", "start again"});
+    EXPECT_EQ(error_of([&] { context_->make_current(); }), "");
+}
+
+// Sets up the process as a machine that lacks something, runs, and ends with 1 and what an Error says.
+template <class Do>
+[[noreturn]] void end_with_error(const char* variable, const char* value, const Do& act) {
+    setenv(variable, value, 1);
+    std::fputs(error_of(act).c_str(), stderr);
+    std::exit(1);
+}
+
+// These in processes of their own, because EGL looks for its drivers once.
 TEST(GlDeathTest, WithoutADriverTheErrorSaysWhatToInstall) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    auto open = [] {
-        setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json", 1);
-        try {
-            Context context;
-        } catch (const Error& error) {
-            std::fputs(error.what(), stderr);
-            std::exit(1);
-        }
-        std::exit(0);
+    const char* wanted = "in OpenGL; install libegl1.*libgl1-mesa-dri";
+    EXPECT_EXIT(end_with_error("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json", [] { Context(); }),
+                ::testing::ExitedWithCode(1), wanted);
+    EXPECT_EXIT(end_with_error("LIBGL_DRIVERS_PATH", "/nowhere", [] { Context(); }),
+                ::testing::ExitedWithCode(1), wanted);
+}
+
+// Mesa pretends to be older where it is told to; so these ask for Mesa.
+const char* mesa = "/usr/share/glvnd/egl_vendor.d/50_mesa.json";
+
+template <class Do>
+[[noreturn]] void end_with_error_of_version_3_3(const Do& act) {
+    setenv("__EGL_VENDOR_LIBRARY_FILENAMES", mesa, 1);
+    end_with_error("MESA_GL_VERSION_OVERRIDE", "3.3", act);
+}
+
+TEST(GlDeathTest, AnOlderOneIsRefusedWithBothVersions) {
+    if (!std::filesystem::exists(mesa)) GTEST_SKIP() << "Mesa is not available";
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(end_with_error_of_version_3_3([] { Context(); }), ::testing::ExitedWithCode(1),
+                "version 3.3, and 4.5 core is needed in OpenGL; update the graphics card's driver");
+}
+
+TEST(GlDeathTest, AnOlderForeignContextIsRefusedWithBothVersions) {
+    if (!std::filesystem::exists(mesa)) GTEST_SKIP() << "Mesa is not available";
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    auto adopt = [] {
+        EGLDisplay display =
+            eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+        eglInitialize(display, nullptr, nullptr);
+        const Foreign foreign(33, display);
+        Context::adopt();
     };
-    EXPECT_EXIT(open(), ::testing::ExitedWithCode(1), "OpenGL; install libegl1.*libgl1-mesa-dri");
+    EXPECT_EXIT(end_with_error_of_version_3_3(adopt), ::testing::ExitedWithCode(1),
+                "version 3.3, and 4.5 core is needed in OpenGL; ask the window for a newer one");
 }
 
 }  // namespace
