@@ -15,8 +15,10 @@ void demand(bool truth) {
     if (!truth) std::abort();
 }
 
-void demand_finite(const std::vector<vec3>& list) {
-    for (vec3 v : list) demand(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
+template <int L>
+void demand_finite(const std::vector<glm::vec<L, float>>& list) {
+    for (const auto& v : list)
+        for (int k = 0; k < L; ++k) demand(std::isfinite(v[k]));
 }
 
 }  // namespace
@@ -29,6 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         demand(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
         demand_finite(mesh.positions);
         demand_finite(mesh.normals);
+        demand(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
+        demand_finite(mesh.uvs);
         for (uvec3 t : mesh.triangles)
             for (int k = 0; k < 3; ++k) demand(t[k] < mesh.positions.size());
     } catch (const Error& error) {

@@ -30,6 +30,7 @@
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/polygon.h"
 #include "palpate/mesh/read.h"
+#include "palpate/mesh/relief.h"
 #include "palpate/mesh/remake.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/mesh/sequence.h"

@@ -1,7 +1,9 @@
 #pragma once
 #include "palpate/mesh/mesh.h"
 
+#include <array>
 #include <cmath>
+#include <string>
 
 // Closed surfaces whose shape is known, for tests.
 
@@ -73,4 +75,26 @@ inline palpate::Mesh both(palpate::Mesh a, const palpate::Mesh& b) {
     a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
     for (palpate::uvec3 t : b.triangles) a.triangles.push_back(t + shift);
     return a;
+}
+
+/// A cube from 0 to 1 as an OBJ file of six quads that each have a strip of a texture: quad q from u = q/8
+/// on, a tenth wide, v from 0 to 1. So each of its corners has three places there.
+inline std::string textured_cube(bool uvs = true) {
+    constexpr std::array<std::array<int, 4>, 6> quads = {
+        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+    std::string text, faces;
+    for (int i = 0; i < 8; ++i)
+        text += "v " + std::to_string(i & 1) + ' ' + std::to_string(i >> 1 & 1) + ' ' +
+                std::to_string(i >> 2) + '\n';
+    for (int q = 0; q < 6; ++q) {
+        faces += 'f';
+        for (int k = 0; k < 4; ++k) {
+            const bool right = k == 1 || k == 2, up = k > 1;
+            if (uvs) text += "vt " + std::to_string(q / 8.0 + 0.1 * right) + ' ' + std::to_string(up) + '\n';
+            faces += ' ' + std::to_string(quads[std::size_t(q)][std::size_t(k)] + 1);
+            if (uvs) faces += '/' + std::to_string(4 * q + k + 1);
+        }
+        faces += '\n';
+    }
+    return text + faces;
 }

@@ -87,6 +87,14 @@ void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3
     }
 }
 
+void compute_normals_by_place(Mesh& mesh) {
+    const std::vector<std::uint32_t> first = first_in_place(mesh.positions);
+    std::vector<uvec3> triangles;
+    for (uvec3 t : mesh.triangles) triangles.push_back({first[t.x], first[t.y], first[t.z]});
+    compute_normals(mesh.positions, triangles, mesh.normals);
+    for (std::size_t i = 0; i < first.size(); ++i) mesh.normals[i] = mesh.normals[first[i]];
+}
+
 void compute_tangents(Mesh& mesh) {
     assert(mesh.uvs.size() == mesh.positions.size());
     if (mesh.normals.size() != mesh.positions.size()) compute_normals(mesh);

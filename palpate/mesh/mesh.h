@@ -2,6 +2,7 @@
 #include "palpate/base/names.h"
 #include "palpate/base/vectors.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace palpate {
@@ -11,7 +12,9 @@ struct Mesh {
     std::vector<vec3> positions;   // m
     std::vector<vec3> normals;     // unit, one a vertex; or empty
     std::vector<uvec3> triangles;  // indices into positions
-    std::vector<vec2> uvs = {};    // texture coordinates, one a vertex; or empty
+    /// Texture coordinates, one a vertex; or empty. u runs to the right and v up, from (0, 0) at a picture's
+    /// lower left corner to (1, 1), as OBJ and OpenGL have it; beyond that the picture repeats.
+    std::vector<vec2> uvs = {};
     std::vector<vec4> tangents =
         {};  // along the texture's u, unit; w: 1, or -1 where it is mirrored; or empty
 };
@@ -38,6 +41,10 @@ void compute_normals(Mesh& mesh);
 void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3>& triangles,
                      std::vector<vec3>& normals);
 
+/// The same across the seams of a texture, where a file has several vertices in one place: they get the
+/// normal that one vertex would have there.
+void compute_normals_by_place(Mesh& mesh);
+
 /// Fills mesh.tangents from its texture coordinates: at each vertex the mean of its faces' ways along u, each
 /// by the face's angle there, brought to right angles with the normal; w says whether v runs along the normal
 /// × the tangent (1) or against it (-1), as most of its faces say. A vertex whose faces have no area in the
@@ -46,5 +53,8 @@ void compute_tangents(Mesh& mesh);
 
 /// Turns by degrees about x, then y, then z, about the world's origin. (-90, 0, 0) takes z up to y up.
 void rotate(Mesh& mesh, vec3 degrees);
+
+/// For each position the number of the first that equals it.
+std::vector<std::uint32_t> first_in_place(const std::vector<vec3>& positions);
 
 }  // namespace palpate

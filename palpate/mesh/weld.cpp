@@ -73,6 +73,18 @@ std::size_t weld_chosen(Mesh& mesh, float tolerance, F chosen) {
 
 }  // namespace
 
+std::vector<Index> first_in_place(const std::vector<vec3>& positions) {
+    Kept kept(positions, 0);
+    std::vector<Index> first(positions.size());
+    for (Index v = 0; v < first.size(); ++v) {
+        first[v] = kept.find(positions[v]);
+        if (first[v] != none) continue;
+        kept.add(v);
+        first[v] = v;
+    }
+    return first;
+}
+
 std::size_t weld(Mesh& mesh, float tolerance) {
     return weld_chosen(mesh, tolerance, [](std::size_t) { return true; });
 }

@@ -72,6 +72,9 @@ void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Dra
         if (mesh.HasNormals())
             for (aiVector3D v : std::span(mesh.mNormals, mesh.mNumVertices))
                 draft.normals.push_back(unit((mirrors ? -1.0 : 1.0) * (tilt * vector(v))));
+        if (mesh.HasTextureCoords(0))  // whose v assimp has turned up where a format has it down
+            for (aiVector3D v : std::span(mesh.mTextureCoords[0], mesh.mNumVertices))
+                draft.uvs.push_back({v.x, v.y});
         for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
             const unsigned size = face.mNumIndices;
             for (unsigned k = 0; k < size; ++k) {
@@ -131,16 +134,18 @@ Draft read_with_assimp(const Source& source, const std::filesystem::path& folder
         Draft draft;
         add(*scene, *scene->mRootNode, aiMatrix4x4(), draft);
         if (draft.normals.size() != draft.positions.size()) draft.normals.clear();  // a part has none
+        if (draft.uvs.size() != draft.positions.size()) draft.uvs.clear();
         put(to, draft.positions);
         put(to, draft.normals);
+        put(to, draft.uvs);
         put(to, draft.corners);
         put(to, draft.sizes);
     });
     Draft draft;
     draft.single = true;
     std::span<const char> bytes = written.bytes();
-    if (!take(bytes, draft.positions) || !take(bytes, draft.normals) || !take(bytes, draft.corners) ||
-        !take(bytes, draft.sizes) ||
+    if (!take(bytes, draft.positions) || !take(bytes, draft.normals) || !take(bytes, draft.uvs) ||
+        !take(bytes, draft.corners) || !take(bytes, draft.sizes) ||
         std::accumulate(draft.sizes.begin(), draft.sizes.end(), std::size_t(0)) != draft.corners.size())
         source.broken(unreadable, remedy);
     return draft;

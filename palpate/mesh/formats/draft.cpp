@@ -12,9 +12,21 @@
 namespace palpate {
 namespace {
 
-bool finite(dvec3 v) {
-    const vec3 f(v);
-    return std::isfinite(f.x) && std::isfinite(f.y) && std::isfinite(f.z);
+// As floats.
+template <int L>
+bool finite(glm::vec<L, double> v) {
+    for (int k = 0; k < L; ++k)
+        if (!std::isfinite(float(v[k]))) return false;
+    return true;
+}
+
+// What belongs to vertices: all of it, or with a note nothing where some is not finite.
+template <int L>
+std::vector<glm::vec<L, float>> attribute(const std::vector<glm::vec<L, double>>& values,
+                                          std::string_view what, std::vector<std::string>& notes) {
+    if (std::all_of(values.begin(), values.end(), finite<L>)) return {values.begin(), values.end()};
+    notes.push_back(fmt::format("left the {} out, of which some are not finite", what));
+    return {};
 }
 
 void check(const Draft& draft, const std::string& name) {
@@ -79,10 +91,8 @@ Mesh finish(const Draft& draft, Units units, const std::string& name, std::vecto
             std::count_if(draft.sizes.begin(), draft.sizes.end(), [](Index n) { return n < 3; }))
         said.push_back(fmt::format("left out {} points and lines", count));
     for (vec3& p : mesh.positions) p *= metres(units);
-    if (std::all_of(draft.normals.begin(), draft.normals.end(), finite))
-        mesh.normals.assign(draft.normals.begin(), draft.normals.end());
-    else
-        said.push_back("left the normals out, of which some are not finite");
+    mesh.normals = attribute(draft.normals, "normals", said);
+    mesh.uvs = attribute(draft.uvs, "texture coordinates", said);
     if (notes) notes->insert(notes->end(), said.begin(), said.end());
     return mesh;
 }

@@ -13,6 +13,7 @@ using Index = std::uint32_t;
 struct Draft {
     std::vector<dvec3> positions;
     std::vector<dvec3> normals;        // one a vertex; or empty
+    std::vector<dvec2> uvs{};          // one a vertex, as a Mesh has them; or empty
     std::vector<Index> corners;        // of all faces, one face after the other
     std::vector<Index> sizes;          // how many of them each face has
     bool single = false;               // the positions were floats: what those have lost is lost

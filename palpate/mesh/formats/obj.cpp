@@ -11,11 +11,12 @@ namespace {
 constexpr std::string_view space = " \t\r\n\v\f\\";
 
 // For each vector the first that equals it bit for bit.
-std::vector<Index> firsts(const std::vector<dvec3>& vectors) {
+template <class T>
+std::vector<Index> firsts(const std::vector<T>& vectors) {
     std::vector<Index> first;
     first.reserve(vectors.size());
     std::unordered_map<std::string_view, Index> known(vectors.size());
-    for (const dvec3& v : vectors) {
+    for (const T& v : vectors) {
         const std::string_view bytes(reinterpret_cast<const char*>(&v), sizeof v);
         first.push_back(known.try_emplace(bytes, Index(first.size())).first->second);
     }
@@ -32,6 +33,7 @@ class Obj {
             std::string_view words = line();
             const std::string_view key = word(words, space);
             if (key == "v") positions_.push_back(three_numbers(words));
+            if (key == "vt") uvs_.push_back(texture_place(words));
             if (key == "vn") normals_.push_back(three_numbers(words));
             if (key == "f") add_face(words);
         }
@@ -59,11 +61,20 @@ class Obj {
         return v;
     }
 
+    // A second number may be missing, and a third means nothing to a picture.
+    dvec2 texture_place(std::string_view words) const {
+        const double u = source_.number(word(words, space));
+        const std::string_view v = word(words, space);
+        return {u, v.empty() ? 0 : source_.number(v)};
+    }
+
     void add_face(std::string_view words) {
         Index size = 0;
         for (auto corner = word(words, space); !corner.empty(); corner = word(words, space), ++size) {
             corners_.push_back(index(until('/', corner), positions_.size(), "vertex"));
-            until('/', corner);  // its place in a texture
+            const std::string_view uv = until('/', corner);
+            all_uvs_ = all_uvs_ && !uv.empty();
+            if (all_uvs_) corner_uvs_.push_back(index(uv, uvs_.size(), "texture coordinate"));
             all_normals_ = all_normals_ && !corner.empty();
             if (all_normals_) corner_normals_.push_back(index(corner, normals_.size(), "normal"));
         }
@@ -79,36 +90,46 @@ class Obj {
         return Index(number < 0 ? double(so_far) + number : number - 1);
     }
 
-    // What the faces use, in that order, one vertex for each position and normal.
+    void check(const std::vector<Index>& numbers, std::size_t count, std::string_view what) const {
+        for (Index n : numbers)
+            if (n >= count) source_.broken(fmt::format("a face naming {} {} of {}", what, n + 1, count));
+    }
+
+    // What the faces use, in that order, one vertex for each position, place in the texture and normal.
     Draft joined() const {
-        const bool normals = all_normals_ && !corner_normals_.empty();
-        for (Index n : corner_normals_)
-            if (normals && n >= normals_.size())
-                source_.broken(fmt::format("a face naming normal {} of {}", n + 1, normals_.size()));
-        for (Index p : corners_)
-            if (p >= positions_.size())
-                source_.broken(fmt::format("a face naming vertex {} of {}", p + 1, positions_.size()));
+        const bool uvs = all_uvs_ && !corner_uvs_.empty(), normals = all_normals_ && !corner_normals_.empty();
+        if (normals) check(corner_normals_, normals_.size(), "normal");
+        if (uvs) check(corner_uvs_, uvs_.size(), "texture coordinate");
+        check(corners_, positions_.size(), "vertex");
+        const std::vector<Index> position = firsts(positions_), uv = firsts(uvs_), normal = firsts(normals_);
+        std::vector<uvec3> corners(corners_.size(), uvec3(0));
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            corners[i].x = position[corners_[i]];
+            if (uvs) corners[i].y = uv[corner_uvs_[i]];
+            if (normals) corners[i].z = normal[corner_normals_[i]];
+        }
         Draft draft;
         draft.sizes = sizes_;
-        draft.corners.reserve(corners_.size());
-        const std::vector<Index> position = firsts(positions_), normal = firsts(normals_);
-        std::unordered_map<std::uint64_t, Index> known;
-        for (std::size_t i = 0; i < corners_.size(); ++i) {
-            const Index p = position[corners_[i]], n = normals ? normal[corner_normals_[i]] : 0;
-            const Index next = Index(draft.positions.size());
-            const Index vertex = known.try_emplace(std::uint64_t(p) << 32 | n, next).first->second;
-            draft.corners.push_back(vertex);
-            if (vertex != next) continue;
-            draft.positions.push_back(positions_[p]);
-            if (normals) draft.normals.push_back(normals_[n]);
+        draft.corners = firsts(corners);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            Index& vertex = draft.corners[i];
+            if (vertex != i) {
+                vertex = draft.corners[vertex];
+                continue;
+            }
+            vertex = Index(draft.positions.size());
+            draft.positions.push_back(positions_[corners[i].x]);
+            if (uvs) draft.uvs.push_back(uvs_[corners[i].y]);
+            if (normals) draft.normals.push_back(normals_[corners[i].z]);
         }
         return draft;
     }
 
     Source source_;
     std::vector<dvec3> positions_, normals_;
-    std::vector<Index> corners_, corner_normals_, sizes_;
-    bool all_normals_ = true;  // each corner has one
+    std::vector<dvec2> uvs_;
+    std::vector<Index> corners_, corner_uvs_, corner_normals_, sizes_;
+    bool all_uvs_ = true, all_normals_ = true;  // each corner has one
 };
 
 }  // namespace

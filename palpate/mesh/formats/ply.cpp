@@ -33,8 +33,15 @@ constexpr Kind kinds[] = {
     {"float", "float32", 4, load<float>},      {"double", "float64", 8, load<double>}};
 
 // What a mesh has a place for.
-constexpr std::string_view columns[] = {"x", "y", "z", "nx", "ny", "nz"};
-constexpr int corners = 6, other = 7;
+constexpr std::string_view columns[] = {"x", "y", "z", "nx", "ny", "nz", "u", "v"};
+constexpr int corners = 8, other = 9;
+
+// Texture coordinates go by several names.
+std::string_view column_name(std::string_view name) {
+    if (name == "s" || name == "texture_u") return "u";
+    if (name == "t" || name == "texture_v") return "v";
+    return name;
+}
 
 struct Property {
     int place;  // among columns, or one of the two above
@@ -77,6 +84,9 @@ class Ply {
         if (found_.contains("nx")) needed.insert({"nx", "ny", "nz"});
         if (found_.contains("tristrips")) source_.broken("triangle strips (tristrips)", "export plain faces");
         if (!found_.contains("face")) source_.broken("no faces");
+        uvs_ = found_.count("u") == 1 && found_.count("v") == 1;  // else they may mean anything
+        found_.erase("u");
+        found_.erase("v");
         if (found_ != needed)
             source_.broken("not just one vertex with x, y, z and one face with vertex_indices");
         normals_ = found_.contains("nx");
@@ -100,14 +110,14 @@ class Ply {
         const Kind* length = type == "list" ? &kind(word(text)) : nullptr;
         const Kind& of = kind(length ? word(text) : type);
         const std::string_view name = word(text);
-        const auto column = std::ranges::find(columns, name);
+        const auto column = std::ranges::find(columns, column_name(name));
         int place = other;
         if (element.name == "face" && length && (name == "vertex_index" || name == "vertex_indices")) {
             place = corners;
             found_.insert("vertex_indices");
         } else if (element.name == "vertex" && !length && column != std::end(columns)) {
             place = int(column - columns);
-            found_.insert(name);
+            found_.insert(*column);
             if (place < 3 && of.name == "float" && !ascii()) draft_.single = true;
         }
         element.properties.push_back({place, &of, length});
@@ -121,7 +131,7 @@ class Ply {
 
     void read_rows(const Element& element) {
         for (element_ = &element, row_ = 1; row_ <= element.count; ++row_) {
-            std::array<double, 8> values;
+            std::array<double, 10> values;
             for (const Property& p : element.properties)
                 if (p.length)
                     read_list(p);
@@ -130,6 +140,7 @@ class Ply {
             if (element.name != "vertex") continue;
             draft_.positions.push_back({values[0], values[1], values[2]});
             if (normals_) draft_.normals.push_back({values[3], values[4], values[5]});
+            if (uvs_) draft_.uvs.push_back({values[6], values[7]});
         }
     }
 
@@ -165,7 +176,7 @@ class Ply {
     std::string_view format_;
     std::vector<Element> elements_;
     std::multiset<std::string_view> found_;  // the elements and properties that a mesh has a place for
-    bool normals_ = false;
+    bool normals_ = false, uvs_ = false;
     const Element* element_ = nullptr;  // where we are
     double row_ = 0;
     Draft draft_;

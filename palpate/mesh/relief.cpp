@@ -1,0 +1,56 @@
+#include "palpate/mesh/relief.h"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace palpate {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+// Of a weave at a place counted in threads, in widths of a thread. Each is half round, and goes up where it
+// lies above the other, down where below.
+float woven(vec2 p) {
+    const ivec2 thread(glm::floor(p));
+    const vec2 round = glm::cos(pi * (p - vec2(thread) - 0.5f));  // 1 in the middle, 0 at the side
+    const float upright_above = (thread.x + thread.y) % 2 == 0 ? 1.0f : -1.0f;
+    const float way = 0.5f * upright_above;
+    const float upright = round.x + way * round.y, level = round.y - way * round.x;
+    return 0.2f * std::max(upright, level);
+}
+
+}  // namespace
+
+Image normal_map(std::span<const float> heights, int width) {
+    assert(width > 0 && heights.size() % std::size_t(width) == 0);
+    const int height = int(heights.size()) / width;
+    Image image{width, height, {}};
+    image.pixels.reserve(4 * heights.size());
+    auto at = [&](int x, int y) {
+        return heights[std::size_t((y + height) % height) * width + std::size_t((x + width) % width)];
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float along_u = 0.5f * (at(x + 1, y) - at(x - 1, y)),
+                        along_v = 0.5f * (at(x, y - 1) - at(x, y + 1));
+            const vec3 normal = glm::normalize(vec3(-along_u, -along_v, 1));
+            for (int k = 0; k < 3; ++k)
+                image.pixels.push_back(std::uint8_t(std::lround(127.5f * (normal[k] + 1))));
+            image.pixels.push_back(255);
+        }
+    return image;
+}
+
+Image weave(ivec2 threads) {
+    constexpr int pixels = 16;  // a thread
+    assert(std::min(threads.x, threads.y) >= 1);
+    std::vector<float> heights;
+    const ivec2 size = pixels * threads;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x)
+            heights.push_back(pixels * woven((vec2(x, y) + 0.5f) / float(pixels)));
+    return normal_map(heights, size.x);
+}
+
+}  // namespace palpate
