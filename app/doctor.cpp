@@ -84,8 +84,6 @@ std::vector<Need> needs(Backend backend, const gl::Limits& has) {
     }
 }
 
-bool on_gpu(Backend backend) { return backend != Backend::reference && backend != Backend::cpu; }
-
 // A small cloth moves one step on it.
 void try_out(Backend backend, const gl::Context* context) {
     const Body body = cloth(ivec2(5, 4), 0.01f, {.density = 0.15f, .damping = 2});

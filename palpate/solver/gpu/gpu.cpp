@@ -69,7 +69,7 @@ class Gpu final : public Solver {
           placement_(body_),
           width_(simulation.backend == Backend::fragment ? row : 0),
           world_(body_, simulation_, placement_),
-          tiled_(simulation.backend == Backend::compute && tiles.value_or(false)),
+          tiled_(simulation.backend == Backend::compute && tiles.value_or(!context_.software())),
           alone_(make_pipeline(simulation.backend, text(false, tiled_))),
           closing_(compute_program(text(false, false), "closing.comp", closing_comp)),
           quiet_(quiet_pass()),
