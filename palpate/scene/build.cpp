@@ -7,6 +7,7 @@
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
 #include "palpate/mesh/read.h"
+#include "palpate/mesh/relief.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/scene/surface.h"
 
@@ -94,8 +95,8 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
 
 // ---- bodies ----
 
-// What the user should know of what came out.
-void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::string>& notes) {
+// What the user should know of what came out. `solid`: the volume that was filled, m³.
+void add_notes(const BodyRecipe& recipe, const Model& model, double solid, std::vector<std::string>& notes) {
     auto note = [&](const std::string& what) {
         notes.push_back(fmt::format("body {}: {}", recipe.name, what));
     };
@@ -109,7 +110,7 @@ void add_notes(const BodyRecipe& recipe, const Model& model, std::vector<std::st
     if (recipe.spacing <= 0 && std::abs(double(body.count()) / recipe.nodes - 1) > 0.05)
         note(fmt::format("{} nodes instead of {}: the nearest that a spacing gives", body.count(),
                          recipe.nodes));
-    const double filled = double(body.cells.size()) * std::pow(body.spacing, 3) / volume(model.surface);
+    const double filled = double(body.cells.size()) * std::pow(body.spacing, 3) / solid;
     if (!(std::abs(filled - 1) < 0.1))
         note(fmt::format(
             "the cells hold {:.2f} times the surface's volume: parts are thinner than a cell, or sealed "
@@ -152,12 +153,27 @@ Body make_body(const BodyRecipe& recipe, const Mesh& surface, const Progress& pr
                    progress);
 }
 
+// A rectangle of cloth as a surface; a picture covers all of it.
+Mesh cloth_mesh(const Body& body) {
+    Mesh mesh = face_mesh(body);
+    const vec3 size = bounds(mesh).size();
+    for (vec3 p : mesh.positions) mesh.uvs.push_back(vec2(p) / vec2(size));
+    return mesh;
+}
+
+void read_maps(const BodyRecipe& recipe, const std::filesystem::path& folder, Model& model) {
+    if (!recipe.colour_map.empty()) model.colour_map = read_image(find_data(recipe.colour_map, folder));
+    if (!recipe.normal_map.empty()) model.normal_map = read_image(find_data(recipe.normal_map, folder));
+    if (recipe.weave) model.normal_map = weave(*recipe.weave);
+}
+
 // A grid is made and its surface hung on it at the origin, where its cells lie along the axes.
 void place(Model& model, const BodyRecipe& recipe) {
     const mat3 turned = turn(recipe.rotate);
     for (vec3& p : model.body.positions) p = turned * p + recipe.move;
     for (vec3& p : model.surface.positions) p = turned * p + recipe.move;
     for (vec3& n : model.surface.normals) n = turned * n;
+    for (vec4& t : model.surface.tangents) t = vec4(turned * vec3(t), t.w);
 }
 
 // The same with the first of its files that is found; with the one it wants where none is.
@@ -178,17 +194,22 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, std::vector<std::s
                 const Progress& progress) {
     const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
     const bool grid = recipe.dims || recipe.cloth;
-    Model model;
-    if (!grid) {
-        CleanSurface made = make_surface(recipe, scene.folder, progress);
-        model.surface = std::move(made.mesh);
-        for (const std::string& note : made.notes)
-            notes.push_back(fmt::format("body {}: {}", recipe.name, note));
-    }
+    CleanSurface made;
+    if (!grid) made = make_surface(recipe, scene.folder, progress);
+    for (const std::string& note : made.notes) notes.push_back(fmt::format("body {}: {}", recipe.name, note));
+    const double solid = volume(made.mesh);
     tell(progress, recipe, recipe.is_cloth() ? "making cloth" : "filling with a lattice", 0.6);
-    model.body = make_body(recipe, model.surface, progress);
+    Model model;
+    model.body = make_body(recipe, made.mesh, progress);
     model.body.name = recipe.name;
-    if (grid) model.surface = recipe.dims ? hull_mesh(model.body) : face_mesh(model.body);
+    if (recipe.dims)
+        model.surface = hull_mesh(model.body);
+    else if (recipe.cloth)
+        model.surface = cloth_mesh(model.body);
+    else
+        model.surface = std::move(recipe.is_textured() ? made.drawn : made.mesh);
+    if (recipe.has_normal_map() && !model.surface.triangles.empty()) compute_tangents(model.surface);
+    read_maps(recipe, scene.folder, model);
     tell(progress, recipe, "hanging the surface on it", 0.9);
     if (!model.surface.positions.empty() && !model.surface.triangles.empty())
         model.embedding = embed(model.surface, model.body, recipe.mapping);
@@ -198,7 +219,7 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, std::vector<std::s
 
     strengthen_regions(model.body, recipe, scene, notes);
     pin(model.body, chosen(model.body, recipe.pin, down(scene), "body " + recipe.name, "pin.", notes));
-    add_notes(recipe, model, notes);
+    add_notes(recipe, model, solid, notes);
     return model;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/base/progress.h"
 #include "palpate/body/body.h"
+#include "palpate/mesh/image.h"
 #include "palpate/scene/scene.h"
 
 #include <string>
@@ -11,8 +12,9 @@ namespace palpate {
 /// A body with the surface that people see, and how the one hangs on the other.
 struct Model {
     Body body;
-    Mesh surface;
+    Mesh surface;  // with texture coordinates where its recipe has maps, and tangents where one is of normals
     Embedding embedding;
+    Image colour_map, normal_map;  // as the recipe wants them; else empty
 };
 
 /// The nodes of a prescribed motion.

@@ -77,6 +77,22 @@ void check_grid(const BodyRecipe& body, const Require& require) {
             "remove them");
 }
 
+// What it wears. A map needs texture coordinates, which only files and cloth have.
+void check_maps(const BodyRecipe& body, const Require& require) {
+    require(body.normal_map.empty() || !body.weave, "normal_map beside weave, of which one must count",
+            "remove one");
+    require(!body.weave || (std::min(body.weave->x, body.weave->y) >= 1 &&
+                            std::max(body.weave->x, body.weave->y) <= 128),
+            "weave is not from 1 to 128 threads each way", "write weave = [60, 40]");
+    if (!body.is_textured()) return;
+    require(!body.surface.empty() || body.cloth,
+            "colour_map, normal_map or weave on what has no texture coordinates",
+            "use a surface that has them, or cloth");
+    require(body.faces == 0 && body.smooth.value_or(0) == 0,
+            "colour_map, normal_map or weave beside faces or smooth, which lose the texture coordinates",
+            "remove one or the other");
+}
+
 void check(const BodyRecipe& body, const Source& source) {
     const Require require = require_of("body " + body.name, body.line, source);
     const Material& m = body.material;
@@ -113,6 +129,7 @@ void check(const BodyRecipe& body, const Source& source) {
     require(std::min({repair.weld, repair.specks, repair.voxel}) >= 0 && repair.specks < 1,
             "weld, specks or voxel is out of range", "give lengths in m, and specks from 0 to below 1");
     if (body.dims || body.cloth) check_grid(body, require);
+    check_maps(body, require);
     check(body.pin, "pin.", require);
     for (const Region& region : body.regions) check(region, body, source);
 }

@@ -103,6 +103,11 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("mapping", body.mapping);
     read("colour", body.colour);
     read("shine", body.shine);
+    read("colour_map", body.colour_map);
+    if (!body.colour_map.empty() && !read.has("colour")) body.colour = vec3(1);
+    read("normal_map", body.normal_map);
+    read("weave", body.weave);
+    read("shade", body.shade);
     read.table("pin", [&](Reader& inside) { read_fields(inside, body.pin); });
     read.each("region", [&](Reader& inside, int line) {
         Region& region = body.regions.emplace_back();
@@ -394,7 +399,9 @@ void apply(toml::table& root, const Change& change) {
     toml::table value = parse_value(key, change.substr(equals + 1));
     if (!value.contains(key)) source.fail(0, "no value", "write one after the equals sign");
     if (names_source(change))
-        for (const char* old : {"volume", "surface", "dims", "cloth", "iso", "units"}) table->erase(old);
+        for (const char* old :
+             {"volume", "surface", "dims", "cloth", "iso", "units", "colour_map", "normal_map", "weave"})
+            table->erase(old);
     table->insert_or_assign(key, *value.get(key));
 }
 

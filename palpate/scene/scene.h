@@ -45,6 +45,17 @@ struct Region {
     int line = 0;
 };
 
+/// What is seen of a surface.
+enum class Shade {
+    colour,   // in the light
+    normals,  // its normals as they are at the moment: x, y and z as red, green and blue (2005, figure 6)
+};
+
+inline std::span<const Named<Shade>> names(Shade) {
+    static constexpr Named<Shade> all[] = {{Shade::colour, "colour"}, {Shade::normals, "normals"}};
+    return all;
+}
+
 /// How a body comes about: what it is made from, of what stuff it is, how it looks.
 struct BodyRecipe {
     std::string name;
@@ -76,8 +87,14 @@ struct BodyRecipe {
     Mapping mapping = Mapping::automatic;
     vec3 colour = vec3(0.80f, 0.55f, 0.50f);  // linear red, green, blue from 0 to 1
     float shine = 0.4f;                       // 0 dull, 1 wet
+    std::string colour_map;                   // a picture, times the colour, which is then white unless given
+    std::string normal_map;      // a picture of normals in the tangent frame, y up, 0 to 255 as -1 to 1; or
+    std::optional<ivec2> weave;  // that of a cloth of so many threads across u and v (mesh/relief.h)
+    Shade shade = Shade::colour;
     int line = 0;
 
+    bool has_normal_map() const { return !normal_map.empty() || weave; }
+    bool is_textured() const { return !colour_map.empty() || has_normal_map(); }
     bool is_cloth() const { return cloth || sheet || (cage && cage->z == 1); }
 };
 
@@ -153,7 +170,7 @@ struct Scene {
 };
 
 /// A change from outside the file: `body.brain.nodes=5000`. One that names another source for a body
-/// (volume, surface, dims, cloth) takes away what was said of the old one: its file, iso and units.
+/// (volume, surface, dims, cloth) takes away what was said of the old one: its file, iso, units and maps.
 using Change = std::string;
 
 /// Reads a scene: the path of a TOML file, or the name of a shipped scene. Changes are made before it is

@@ -4,6 +4,7 @@
 #include "palpate/mesh/histogram.h"
 #include "palpate/mesh/intersections.h"
 #include "palpate/mesh/isosurface.h"
+#include "palpate/mesh/parts.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/repair.h"
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -87,6 +89,41 @@ void mend(Mesh& mesh, Work& work) {
         work.did(fmt::format("{}: {}", step.what, step.count));
 }
 
+// What maps are drawn on: the file's own surface, since mending forgets texture coordinates; as much of it as
+// is kept, and right way out.
+Mesh textured(const Mesh& mesh, const BodyRecipe& recipe) {
+    if (mesh.uvs.empty())
+        throw Error("no texture coordinates at all corners, for colour_map, normal_map or weave,",
+                    file_of(recipe), "export it with them, or remove the maps");
+    Mesh whole{mesh.positions, {}, {}};  // across the seams
+    const std::vector<Index> first = first_in_place(mesh.positions);
+    for (uvec3 t : mesh.triangles) whole.triangles.push_back({first[t.x], first[t.y], first[t.z]});
+    const Parts part = parts(whole);
+    std::vector<std::size_t> faces(part.count);
+    for (Index p : part.of) ++faces[p];
+    const auto largest = Index(std::max_element(faces.begin(), faces.end()) - faces.begin());
+
+    Mesh drawn;
+    std::vector<Index> place(mesh.positions.size(), none);
+    const bool inside_out = !may_be_open(recipe) && volume(mesh) < 0;
+    for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+        if (recipe.largest && part.of[face] != largest) continue;
+        uvec3 t = mesh.triangles[face];
+        if (inside_out) std::swap(t.y, t.z);
+        for (int k = 0; k < 3; ++k) {
+            Index& vertex = place[t[k]];
+            if (vertex == none) {
+                vertex = Index(drawn.positions.size());
+                drawn.positions.push_back(mesh.positions[t[k]]);
+                drawn.uvs.push_back(mesh.uvs[t[k]]);
+            }
+            t[k] = vertex;
+        }
+        drawn.triangles.push_back(t);
+    }
+    return drawn;
+}
+
 void simplify(Mesh& mesh, Work& work) {
     const BodyRecipe& recipe = work.recipe;
     if (const int passes = recipe.smooth.value_or(recipe.volume.empty() ? 0 : 10); passes > 0) {
@@ -105,13 +142,17 @@ void simplify(Mesh& mesh, Work& work) {
     if (mesh.triangles.empty()) throw Error("no face is left", file_of(recipe), "ask for more faces");
 }
 
-void place(Mesh& mesh, const BodyRecipe& recipe) {
+// What is drawn goes where the mesh goes.
+void place(Mesh& mesh, Mesh& drawn, const BodyRecipe& recipe) {
     rotate(mesh, recipe.rotate);
+    rotate(drawn, recipe.rotate);
     const float scale = scale_of(mesh, recipe);
     if (!std::isfinite(scale)) throw Error("a surface without a size", file_of(recipe), "give a mesh");
-    for (vec3& p : mesh.positions) p *= scale;
+    for (Mesh* one : {&mesh, &drawn})
+        for (vec3& p : one->positions) p *= scale;
     const vec3 way = recipe.move - (recipe.centre ? bounds(mesh).centre() : vec3(0));
-    for (vec3& p : mesh.positions) p += way;
+    for (Mesh* one : {&mesh, &drawn})
+        for (vec3& p : one->positions) p += way;
 }
 
 }  // namespace
@@ -121,11 +162,13 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
     Work work{recipe, folder, progress};
     work.tell("reading", 0);
     Mesh mesh = recipe.volume.empty() ? from_file(work) : from_volume(work);
+    Mesh drawn = recipe.is_textured() ? textured(mesh, recipe) : Mesh();
     mend(mesh, work);
     work.tell("simplifying the surface", 0.5);
     simplify(mesh, work);
-    place(mesh, recipe);
+    place(mesh, drawn, recipe);
     compute_normals(mesh);
+    compute_normals_by_place(drawn);
     const Soundness sound = soundness(mesh);
     work.did(fmt::format("{} vertices, {} faces, {} parts, {} open edges, {} bad edges",
                          mesh.positions.size(), mesh.triangles.size(), sound.parts, sound.open_edges,
@@ -133,6 +176,7 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
     if (const std::string warning = size_warning(mesh); !warning.empty())
         work.result.notes.push_back(warning);
     work.result.mesh = std::move(mesh);
+    work.result.drawn = std::move(drawn);
     return std::move(work.result);
 }
 

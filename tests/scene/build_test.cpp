@@ -3,6 +3,7 @@
 
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
+#include "palpate/mesh/image.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/write.h"
 #include "tests/scratch.h"
@@ -120,6 +121,79 @@ TEST(Build, ASheetIsItsOwnSurfaceAndMayBeOpen) {
     EXPECT_EQ(sheet.body.faces.size(), 2u);
     EXPECT_NEAR(mass(sheet.body), 0.5, 1e-6);
     EXPECT_EQ(make(text + "largest = false\n", scratch / ".").models[0].body.count(), 7u);
+}
+
+TEST(Build, APictureCoversARectangleOfCloth) {
+    const Models made = make(R"(
+[[body]]
+cloth = [5, 4]
+spacing = 0.1
+rotate = [90, 0, 0]
+move = [0, 0, 1]
+density = 0.2
+weave = [8, 6]
+)");
+    const Mesh& flag = made.models[0].surface;
+    ASSERT_EQ(flag.uvs.size(), 20u);
+    ASSERT_EQ(flag.tangents.size(), 20u);
+    for (std::size_t i = 0; i < 20; ++i) {
+        const vec3 p = flag.positions[i];  // turned flat: v runs along z
+        EXPECT_LT(glm::distance(flag.uvs[i], vec2(p.x / 0.4f, (p.z - 1) / 0.3f)), 1e-5f);
+        EXPECT_LT(glm::distance(flag.tangents[i], vec4(1, 0, 0, 1)), 1e-5f);
+    }
+    EXPECT_EQ(made.models[0].normal_map.width, 8 * 16);
+    EXPECT_EQ(made.models[0].normal_map.height, 6 * 16);
+    EXPECT_TRUE(made.models[0].colour_map.empty());
+    // The cloth is the same without it.
+    const Model plain =
+        make(
+            "[[body]]\ncloth = [5, 4]\nspacing = 0.1\nrotate = [90, 0, 0]\nmove = [0, 0, 1]\ndensity = 0.2\n")
+            .models[0];
+    EXPECT_EQ(plain.surface.positions, flag.positions);
+    EXPECT_TRUE(plain.surface.tangents.empty());
+}
+
+TEST(Build, MapsHangOnTheNodesOfTheMendedSolid) {
+    Scratch scratch;
+    write_text(scratch / "cube.obj", textured_cube());
+    const Image red{2, 1, {255, 0, 0, 255, 0, 255, 0, 255}}, flat{1, 1, {128, 128, 255, 255}};
+    write_png(red, scratch / "red.png");
+    write_png(flat, scratch / "flat.png");
+    const std::string text =
+        "[[body]]\nsurface = \"cube.obj\"\nyoungs_modulus = 5000\ndensity = 1000\nnodes = 500\n"
+        "rotate = [0, 0, 90]\n";
+    const Model plain = make(text, scratch / ".").models[0];
+    const Model worn =
+        make(text + "colour_map = \"red.png\"\nnormal_map = \"flat.png\"\n", scratch / ".").models[0];
+    EXPECT_EQ(worn.body.positions, plain.body.positions);
+    EXPECT_EQ(plain.surface.positions.size(), 8u);
+    EXPECT_TRUE(plain.colour_map.empty() && plain.normal_map.empty() && plain.surface.tangents.empty());
+    EXPECT_EQ(worn.colour_map.pixels, red.pixels);
+    EXPECT_EQ(worn.normal_map.pixels, flat.pixels);
+    ASSERT_EQ(worn.surface.positions.size(), 24u);
+    ASSERT_EQ(worn.surface.tangents.size(), 24u);
+    ASSERT_EQ(worn.embedding.tangents.size(), 24u);
+    // The nodes turned by 90° about x take positions, normals and tangents along.
+    std::vector<vec3> turned, positions, normals;
+    std::vector<vec4> tangents;
+    const mat3 by = turn({90, 0, 0});
+    for (vec3 p : worn.body.positions) turned.push_back(by * p);
+    const std::vector<vec3> none(worn.body.count(), vec3(0));
+    deform(worn.embedding, {turned, none}, positions, normals, &tangents);
+    ASSERT_EQ(tangents.size(), 24u);
+    for (std::size_t i = 0; i < 24; ++i) {
+        EXPECT_LT(glm::distance(positions[i], by * worn.surface.positions[i]), 1e-5f);
+        EXPECT_LT(glm::distance(normals[i], by * worn.surface.normals[i]), 1e-4f);
+        EXPECT_LT(glm::distance(vec3(tangents[i]), by * vec3(worn.surface.tangents[i])), 1e-4f);
+        EXPECT_EQ(tangents[i].w, worn.surface.tangents[i].w);
+        EXPECT_LT(std::abs(glm::dot(vec3(tangents[i]), normals[i])), 1e-4f);
+    }
+    // Vertices in one place stay in one place, to the bit: no seam opens.
+    const auto first = first_in_place(worn.surface.positions);
+    for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(positions[i], positions[first[i]]);
+    EXPECT_THROW(make(text + "colour_map = \"none.png\"\n", scratch / "."), Error);
+    write_text(scratch / "red.png", "no picture");
+    EXPECT_THROW(make(text + "colour_map = \"red.png\"\n", scratch / "."), Error);
 }
 
 std::vector<int> strengthened(const Body& body, float factor) {

@@ -216,6 +216,34 @@ youngs_modulus = 20000
     expect_words(refusal(cloth + "nodes = [0]\nyoungs_modulus = 2\n"), {"give it a factor"});
 }
 
+TEST(Scene, MapsAndShade) {
+    const std::string cow =
+        "[[body]]\nname = \"cow\"\nsurface = \"cow.obj\"\nmass = 1\nyoungs_modulus = 5000\n";
+    const BodyRecipe plain = parse(cow).bodies[0];
+    EXPECT_FALSE(plain.is_textured());
+    EXPECT_EQ(plain.shade, Shade::colour);
+    const BodyRecipe worn =
+        parse(cow + "colour_map = \"cow.png\"\nnormal_map = \"hair.png\"\nshade = \"normals\"\n").bodies[0];
+    EXPECT_EQ(worn.colour_map, "cow.png");
+    EXPECT_EQ(worn.normal_map, "hair.png");
+    EXPECT_EQ(worn.shade, Shade::normals);
+    EXPECT_EQ(worn.colour, vec3(1));  // as painted
+    EXPECT_EQ(parse(cow + "colour_map = \"cow.png\"\ncolour = [1, 0, 0]\n").bodies[0].colour, vec3(1, 0, 0));
+    EXPECT_EQ(parse(cow + "weave = [60, 40]\n").bodies[0].weave, ivec2(60, 40));
+    expect_words(refusal(cow + "color_map = \"cow.png\"\n"), {"color_map", "\"colour_map\"", "line 6"});
+    expect_words(refusal(cow + "shade = \"normal\"\n"), {"normal", "colour, normals"});
+    expect_words(refusal(cow + "weave = [0, 40]\n"), {"body cow", "1 to 128"});
+    expect_words(refusal(cow + "weave = [2, 4]\nnormal_map = \"hair.png\"\n"), {"weave", "normal_map"});
+    const std::string map = "colour_map = \"cow.png\"\n";
+    expect_words(refusal(cow + map + "faces = 500\n"), {"body cow", "faces", "texture coordinates"});
+    expect_words(refusal(cow + map + "smooth = 3\n"), {"smooth", "texture coordinates"});
+    expect_words(refusal(small + map), {"body cube", "no texture coordinates"});
+    // Another surface does not wear what was made for this one.
+    EXPECT_FALSE(parse_scene(cow + map, "test.toml", ".", std::vector<Change>{"body.cow.surface=horse.obj"})
+                     .bodies[0]
+                     .is_textured());
+}
+
 TEST(Scene, WindAndAir) {
     EXPECT_EQ(parse(small).simulation.air, 0);
     EXPECT_TRUE(parse(small).wind.empty());
@@ -456,7 +484,8 @@ TEST_P(Shipped, BuildsAsItSays) {
     std::size_t held = 0;
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const BodyRecipe& recipe = scene.bodies[m];
-        const auto& [body, surface, embedding] = made.models[m];
+        const Body& body = made.models[m].body;
+        const Mesh& surface = made.models[m].surface;
         if (!recipe.dims && !recipe.cloth && !recipe.cage)
             EXPECT_LE(std::abs(double(body.count()) / recipe.nodes - 1), 0.05);
         EXPECT_GT(surface.triangles.size(), 0u);

@@ -1,11 +1,15 @@
 // What make_surface() makes of one recipe.
 #include "palpate/scene/surface.h"
 
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
 #include <gtest/gtest.h>
+
+#include <optional>
 
 namespace palpate {
 namespace {
@@ -45,6 +49,84 @@ TEST(Surface, LengthsForItsMendingCountAfterScaling) {
     EXPECT_EQ(faces[0], faces[1]);
     EXPECT_GT(faces[0], 400u);  // ten voxels across
     EXPECT_LT(faces[0], 1200u);
+}
+
+// The number of a vertex of `mesh` in this place, or none.
+std::optional<std::size_t> at(const Mesh& mesh, vec3 place) {
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        if (glm::distance(mesh.positions[i], place) <= 1e-6f) return i;
+    return {};
+}
+
+TEST(Surface, WithMapsTheFilesOwnIsDrawnWhereTheMendedOneLies) {
+    Scratch scratch;
+    write_text(scratch / "cube.obj", textured_cube());
+    BodyRecipe recipe;
+    recipe.surface = "cube.obj";
+    recipe.rotate = {20, 30, 40};
+    recipe.size = 0.2f;
+    recipe.centre = true;
+    recipe.move = {1, 2, 3};
+    const CleanSurface plain = make_surface(recipe, scratch / "");
+    EXPECT_TRUE(plain.drawn.positions.empty());
+    recipe.normal_map = "any.png";
+    const CleanSurface made = make_surface(recipe, scratch / "");
+    EXPECT_EQ(made.mesh.positions, plain.mesh.positions);
+    EXPECT_EQ(made.mesh.triangles, plain.mesh.triangles);
+    EXPECT_EQ(made.mesh.positions.size(), 8u);
+    ASSERT_EQ(made.drawn.positions.size(), 24u);
+    ASSERT_EQ(made.drawn.uvs.size(), 24u);
+    ASSERT_EQ(made.drawn.normals.size(), 24u);
+    for (std::size_t i = 0; i < 24; ++i) {
+        const auto same = at(made.mesh, made.drawn.positions[i]);
+        ASSERT_TRUE(same) << i;
+        EXPECT_LE(glm::distance(made.drawn.normals[i], made.mesh.normals[*same]), 1e-6f);
+        // A cube's corner, seen by three faces alike.
+        const vec3 out = glm::normalize(made.drawn.positions[i] - recipe.move);
+        EXPECT_LE(glm::distance(made.drawn.normals[i], out), 1e-5f);
+    }
+    EXPECT_NEAR(volume(made.drawn), volume(made.mesh), 1e-7);
+}
+
+TEST(Surface, WhatIsDrawnIsTheLargestPartTheRightWayOut) {
+    Scratch scratch;
+    std::string text = textured_cube();
+    for (std::size_t line = text.find("\nf"); line != std::string::npos; line = text.find("\nf", line + 1)) {
+        std::size_t end = text.find('\n', line + 1);  // the corners the other way round
+        std::string turned, word;
+        for (std::size_t i = line + 3; i <= end; ++i)
+            if (text[i] == ' ' || text[i] == '\n')
+                turned = ' ' + word + turned, word.clear();
+            else
+                word += text[i];
+        text.replace(line + 2, end - line - 2, turned);
+    }
+    text += "v 5 5 5\nv 6 5 5\nv 5 6 5\nf 9/1 10/2 11/3\n";
+    write_text(scratch / "cube.obj", text);
+    BodyRecipe recipe;
+    recipe.surface = "cube.obj";
+    recipe.weave = {4, 4};
+    const CleanSurface made = make_surface(recipe, scratch / "");
+    EXPECT_EQ(made.drawn.triangles.size(), 12u);
+    EXPECT_EQ(made.drawn.positions.size(), 24u);
+    EXPECT_NEAR(volume(made.drawn), 1, 1e-6);
+    EXPECT_NEAR(volume(made.mesh), 1, 1e-6);
+}
+
+TEST(Surface, MapsWantTextureCoordinates) {
+    Scratch scratch;
+    write_text(scratch / "cube.obj", textured_cube(false));
+    BodyRecipe recipe;
+    recipe.surface = "cube.obj";
+    recipe.colour_map = "any.png";
+    EXPECT_THROW(
+        try { make_surface(recipe, scratch / ""); } catch (const Error& error) {
+            const std::string line = error.what();
+            EXPECT_NE(line.find("no texture coordinates"), std::string::npos) << line;
+            EXPECT_NE(line.find("cube.obj; "), std::string::npos) << line;
+            throw;
+        },
+        Error);
 }
 
 }  // namespace
