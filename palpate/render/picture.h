@@ -12,7 +12,7 @@ namespace palpate {
 struct Look {
     vec3 colour = vec3(0.8f, 0.42f, 0.38f);  // linear red, green and blue, 0 to 1; living tissue by default
     float shine = 0.6f;                      // 0 as dull as chalk, 1 as wet as an eye
-    int colour_map = -1;  // a number from Renderer::add(image): colours that stand for `colour`; -1: none
+    int colour_map = -1;  // a number from Renderer::add(image): colours to multiply `colour` with; -1: none
     int normal_map = -1;  // the same, of normals about the surface's own; -1: none
     bool shows_normals = false;  // its colour is where its vertices' normals point now (2005, figure 6)
 };

@@ -39,7 +39,7 @@ void main() {
     vec3 smooth_normal = dot(upright, upright) > 0 ? normalize(upright) : gl_FrontFacing ? to_eye : -to_eye;
     vec3 normal = bumpy ? bumped(smooth_normal) : smooth_normal;
     if (!gl_FrontFacing) normal = -normal;
-    vec3 own = coloured ? texture(colour_map, uv).rgb : look;
+    vec3 own = coloured ? look * texture(colour_map, uv).rgb : look;
     if (shows_normals) own = pow(0.5 + 0.5 * smooth_normal, vec3(2.2));  // so that the screen shows them evenly
     float share = dot(normal, to_light) > 0 ? key_share(place, normal, 2.5, 10) : 0;
     colour = vec4(shown(lit(normal, to_eye, own, shine, sky, share)), 1);

@@ -25,9 +25,12 @@ vec3 middle(const Model& model) {
 
 Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, const gl::Context* context)
     : scene_(scene), made_(made), settings_(settings), renderer_({settings.width, settings.height}, context) {
-    for (const Model& model : made.models)
-        meshes_.push_back(mapped_where_drawn() ? renderer_.add(model.surface, model.embedding)
-                                               : renderer_.add(model.surface));
+    for (std::size_t m = 0; m < made.models.size(); ++m) {
+        const Model& model = made.models[m];
+        meshes_.push_back(mapped_where_drawn(m) ? renderer_.add(model.surface, model.embedding)
+                                                : renderer_.add(model.surface));
+        looks_.push_back(look(scene.bodies[m], model));
+    }
     for (const Collider& collider : made.simulation.colliders) {
         Shape& shape = shapes_.emplace_back();
         shape.rest = shape.now = shape_mesh(collider);
@@ -41,6 +44,19 @@ Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, 
         for (const Model& model : made.models) springs_.push_back(spring_ends(model.body));
     camera_ = scene.camera;
     camera_.look_at = looked_at();
+}
+
+Look Show::look(const BodyRecipe& recipe, const Model& model) {
+    Look look{recipe.colour, recipe.shine};
+    if (model.colour_map.width > 0) look.colour_map = renderer_.add(model.colour_map, Texels::colours);
+    if (model.normal_map.width > 0) look.normal_map = renderer_.add(model.normal_map, Texels::normals);
+    look.shows_normals = recipe.shade == Shade::normals;
+    return look;
+}
+
+// Where a GPU moves the nodes, surfaces follow them there; normal maps want tangents, which go that way too.
+bool Show::mapped_where_drawn(std::size_t body) const {
+    return on_gpu(made_.simulation.backend) || made_.models[body].normal_map.width > 0;
 }
 
 const std::string& Show::renderer() const { return renderer_.context().renderer(); }
@@ -81,12 +97,12 @@ Picture Show::picture(double time, const Play& play) {
     picture.camera = camera_;
     picture.light = scene_.light;
     for (std::size_t m = 0; m < made_.models.size(); ++m) {
-        const BodyRecipe& recipe = scene_.bodies[m];
         Surface& surface = picture.surfaces.emplace_back();
         surface.mesh = meshes_[m];
-        surface.look = {recipe.colour, recipe.shine};
-        if (mapped_where_drawn()) {
+        surface.look = looks_[m];
+        if (mapped_where_drawn(m)) {
             surface.gpu_nodes = play.gpu_nodes(m);
+            if (surface.gpu_nodes.positions == 0) surface.nodes = play.nodes(m);
         } else {
             surface.positions = play.skins()[m].positions;
             surface.normals = play.skins()[m].normals;

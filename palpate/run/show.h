@@ -28,8 +28,8 @@ class Show {
     void finish();
 
  private:
-    // Where a GPU moves the nodes, surfaces follow them there.
-    bool mapped_where_drawn() const { return on_gpu(made_.simulation.backend); }
+    Look look(const BodyRecipe& recipe, const Model& model);
+    bool mapped_where_drawn(std::size_t body) const;
     vec3 looked_at() const;
     Picture picture(double time, const Play& play);
     void add_tools(const Play& play, Picture& picture);
@@ -41,6 +41,7 @@ class Show {
     Renderer renderer_;
     Camera camera_;
     std::vector<int> meshes_;  // of the bodies' surfaces
+    std::vector<Look> looks_;
     std::vector<std::vector<uvec2>> springs_;
     struct Shape {
         Mesh rest, now;  // of a collider: as it is given, and where it is

@@ -167,7 +167,7 @@ TEST_F(Shading, AColourMapLiesAsItsCoordinatesSay) {
                     {std::uint8_t(255 * red), std::uint8_t(255 * green), std::uint8_t(255 * blue), 255});
         }
     const FlatQuilt plane;
-    const Look look{.shine = 0, .colour_map = renderer_->add(quarters)};
+    const Look look{.colour = vec3(1), .shine = 0, .colour_map = renderer_->add(quarters)};
     const Picture around = from({0, 0, 0.6f}, {0, 0, -1});
     const Image nodes = drawn(plane, Mapping::frames, unturned, look, around);
     Picture host = around;
