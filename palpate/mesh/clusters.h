@@ -11,7 +11,7 @@ struct Clusters {
     std::vector<std::size_t> ends;  // where each cluster's end in that list
 };
 
-/// At most `vertices` (3 to 255) and `faces` (1 to 512) in each.
+/// At most `vertices` (3 to 255) and `faces` (4 to 512, a multiple of 4) in each.
 Clusters clusters(const Mesh& mesh, std::size_t vertices, std::size_t faces);
 
 }  // namespace palpate

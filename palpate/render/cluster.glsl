@@ -2,7 +2,8 @@
 
 // As Cluster in culling.cpp.
 struct Cluster {
-    int parts_end;  // where its parts end; they begin where the last cluster's end
+    // Where its parts end, and the corners of its triangles; they begin where the last cluster's end.
+    int parts_end, corners_end;
     // The cone of its triangles' normals at rest, and of each triangle the two shorter sides and 1 over its area,
     // twice: the largest. In cells; 0 where there is no such cone.
     float axis[3], cosine, sine;

@@ -10,7 +10,7 @@ struct Command {
     int base_vertex;
     uint base_instance;
 };
-layout(std430, binding = 5) buffer Commands { Command commands[]; };
+layout(std430, binding = 5) writeonly buffer Commands { Command commands[]; };
 
 uniform bool hides_backs;  // whether triangles that show their backs are not drawn
 
@@ -27,12 +27,26 @@ bool outside(Box box) {
     return any(lessThan(most, vec3(0))) || any(greaterThan(least, vec3(0)));
 }
 
-void main() {
-    int c = int(gl_GlobalInvocationID.x);
-    if (c >= clusters.length()) return;
+bool hidden(int c) {
     int first = c > 0 ? clusters[c - 1].parts_end : 0, end = clusters[c].parts_end;
     Box box = no_box();
     for (int i = first; i < end; ++i) include_part(i, box);
-    bool hidden = outside(box) || hides_backs && faces_away(clusters[c], first, end, box);
-    commands[c].instances = hidden ? 0 : 1;
+    return outside(box) || hides_backs && faces_away(clusters[c], first, end, box);
+}
+
+shared bool drawn[gl_WorkGroupSize.x];
+
+// A draw costs more than a few triangles, so that neighbours which are both drawn become one: the command of the
+// first draws them all.
+void main() {
+    int c = int(gl_GlobalInvocationID.x), here = int(gl_LocalInvocationID.x);
+    bool exists = c < clusters.length();
+    drawn[here] = exists && !hidden(c);
+    barrier();
+    if (!exists) return;
+    bool begins = drawn[here] && (here == 0 || !drawn[here - 1]);
+    int first = c > 0 ? clusters[c - 1].corners_end : 0, end = first;
+    if (begins)
+        for (; here < drawn.length() && drawn[here]; ++here) end = clusters[c++].corners_end;
+    commands[gl_GlobalInvocationID.x] = Command(uint(end - first), begins ? 1 : 0, uint(first), 0, 0);
 }

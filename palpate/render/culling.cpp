@@ -34,7 +34,7 @@ constexpr float widest = 0.1f;  // the cosine of half the widest cone of normals
 
 // As shaders read them: see the GLSL for what they mean.
 struct Cluster {
-    int parts_end = 0;
+    int parts_end = 0, corners_end = 0;
     vec3 axis = vec3(0);
     float cosine = 0, sine = 0;
     float sharpness = 0, smallness = 0;
@@ -58,7 +58,7 @@ struct Command {
     GLint base_vertex;
     GLuint base_instance;
 };
-static_assert(sizeof(Cluster) == 8 * 4 && sizeof(CellPart) == 17 * 4 && sizeof(TrianglePart) == 8 * 4 &&
+static_assert(sizeof(Cluster) == 9 * 4 && sizeof(CellPart) == 17 * 4 && sizeof(TrianglePart) == 8 * 4 &&
               sizeof(FramePart) == 25 * 4);
 
 using Members = std::vector<unsigned>;  // numbers of vertices
@@ -133,7 +133,8 @@ Made<CellPart> make(const Clusters& clusters, const Mesh& mesh, const std::vecto
             for (unsigned v : group) places[v] = origin + vertices[v].at;
             made.parts.push_back({nodes, box.low, box.high, origin});
         }
-        Cluster& cluster = made.clusters.emplace_back(Cluster{int(made.parts.size())});
+        Cluster& cluster =
+            made.clusters.emplace_back(Cluster{int(made.parts.size()), int(3 * clusters.ends[c])});
         make_cone(triangles, places, cluster);
     }
     return made;
@@ -157,7 +158,7 @@ Made<TrianglePart> make(const Clusters& clusters, const Mesh&, const std::vector
             }
             made.parts.push_back(part);
         }
-        made.clusters.push_back({int(made.parts.size())});
+        made.clusters.push_back({int(made.parts.size()), int(3 * clusters.ends[c])});
     }
     return made;
 }
@@ -179,7 +180,7 @@ Made<FramePart> make(const Clusters& clusters, const Mesh&, const Framed& framed
             }
             made.parts.push_back(part);
         }
-        made.clusters.push_back({int(made.parts.size())});
+        made.clusters.push_back({int(made.parts.size()), int(3 * clusters.ends[c])});
     }
     return made;
 }
@@ -202,14 +203,9 @@ Culling::Culling(const Clusters& clusters, const Mesh& mesh, const Embedding& em
             clusters_ = gl::Buffer(made.clusters);
         },
         embedding.vertices);
-    std::vector<Command> commands;
-    for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
-        const auto triangles = triangles_of(clusters, c);
-        const auto first = GLuint(3 * (clusters.ends[c] - triangles.size()));
-        commands.push_back({GLuint(3 * triangles.size()), 1, first, 0, 0});
-        vertices_.push_back(members(triangles).size());
-    }
-    commands_ = gl::Buffer(commands);
+    for (std::size_t c = 0; c < clusters.ends.size(); ++c)
+        sizes_.push_back({members(triangles_of(clusters, c)).size(), 3 * clusters.ends[c]});
+    commands_ = gl::Buffer::room(sizes_.size() * sizeof(Command));
 }
 
 void Culling::find(const View& view, bool hides_backs, bool in_textures) const {
@@ -221,23 +217,26 @@ void Culling::find(const View& view, bool hides_backs, bool in_textures) const {
     program.set("eye", view.eye);
     program.set("hides_backs", hides_backs);
     program.use();
-    glDispatchCompute(GLuint(vertices_.size() + group - 1) / group, 1, 1);
+    glDispatchCompute(GLuint(sizes_.size() + group - 1) / group, 1, 1);
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 void Culling::draw() const {
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, GLsizei(vertices_.size()), 0);
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, GLsizei(sizes_.size()), 0);
 }
 
 Culled Culling::count(const gl::Context& context) const {
-    std::vector<Command> commands(vertices_.size());
+    std::vector<Command> commands(sizes_.size());
     context.read(commands_.name(), std::as_writable_bytes(std::span(commands)));
-    Culled culled{.clusters = commands.size()};
-    for (std::size_t c = 0; c < commands.size(); ++c) {
-        culled.vertices += vertices_[c];
-        culled.clusters_drawn += commands[c].instances;
-        culled.vertices_drawn += commands[c].instances * vertices_[c];
+    Culled culled{.clusters = sizes_.size()};
+    std::size_t drawn_until = 0;  // so many corners
+    for (std::size_t c = 0; c < sizes_.size(); ++c) {
+        if (commands[c].instances > 0) drawn_until = commands[c].first_index + commands[c].count;
+        const bool drawn = sizes_[c].corners_end <= drawn_until;
+        culled.vertices += sizes_[c].vertices;
+        culled.clusters_drawn += drawn;
+        culled.vertices_drawn += drawn ? sizes_[c].vertices : 0;
     }
     return culled;
 }

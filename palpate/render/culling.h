@@ -32,7 +32,10 @@ class Culling {
     Culled count(const gl::Context& context) const;
 
  private:
-    std::vector<std::size_t> vertices_;  // of each cluster
+    struct Size {
+        std::size_t vertices, corners_end;
+    };
+    std::vector<Size> sizes_;  // of each cluster
     gl::Buffer parts_, clusters_, commands_;
     gl::Program from_buffers_, from_textures_;
 };

@@ -49,7 +49,7 @@ struct Model {
     bool closed = false;  // then nobody sees its triangles from behind
     // Of one that was added with an embedding:
     std::optional<GpuEmbedding> embedding;
-    std::optional<Culling> shadow_culling, picture_culling;
+    std::optional<Culling> culling;
     Reach reach;
 };
 
@@ -64,7 +64,6 @@ struct Moving {
 struct Pass {
     View view;
     std::function<const gl::Program&(const SurfacePrograms&)> begin;  // tells the program what it shall know
-    std::optional<Culling> Model::*culling;
     bool culls;
 };
 
@@ -251,7 +250,7 @@ void Renderer::Parts::draw(const Picture& picture) {
         tell(some.shown, seen, light, picture.balls.size());
         return some.shown;
     };
-    const Pass shown{seen, begin, &Model::picture_culling, picture.culls};
+    const Pass shown{seen, begin, picture.culls};
     tell(programs.ground, seen, light, light.round.size());
 
     upload(picture.surfaces);
@@ -307,7 +306,7 @@ void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light
         return some.depth;
     };
     const View from_light{light.to_clip, vec4(light.to_light, 0), vec3(0)};
-    const Pass depth{from_light, begin, &Model::shadow_culling, picture.culls};
+    const Pass depth{from_light, begin, picture.culls};
     shadow.begin();
     draw_surfaces(picture.surfaces, depth);
     draw_balls(picture.balls, depth);
@@ -335,8 +334,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
         const gl::Program& program = pass.begin(programs_for(model, moving[i]));
         bind(model, moving[i]);
         const bool culls = pass.culls && moving[i].nodes.positions != 0;
-        const std::optional<Culling>& culling = model.*pass.culling;
-        if (culls) culling->find(pass.view, model.closed, moving[i].nodes.width > 0);
+        if (culls) model.culling->find(pass.view, model.closed, moving[i].nodes.width > 0);
         program.use();
         program.set("centre", vec3(0));
         program.set("size", 1.0f);
@@ -344,7 +342,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
         // Fragments are what costs, and half of them would be the far side's.
         if (model.closed) glEnable(GL_CULL_FACE);
         if (culls)
-            culling->draw();
+            model.culling->draw();
         else
             draw_triangles(model);
         glDisable(GL_CULL_FACE);
@@ -461,8 +459,7 @@ int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
     const Clusters groups = clusters(mesh, cluster_vertices, cluster_faces);
     model.triangles = gl::Buffer(groups.triangles);
     model.embedding.emplace(embedding);
-    model.shadow_culling.emplace(groups, mesh, embedding);
-    model.picture_culling.emplace(groups, mesh, embedding);
+    model.culling.emplace(groups, mesh, embedding);
     model.reach = palpate::reach(mesh, embedding);
     const GLuint corners = model.embedding->vertex_array();
     enable(corners, openness_attribute, 1);
@@ -489,7 +486,7 @@ Image Renderer::image() const {
 
 Culled Renderer::culled(int mesh) const {
     const Model& model = parts_->models.at(mesh);
-    return model.picture_culling ? model.picture_culling->count(parts_->context) : Culled{};
+    return model.culling ? model.culling->count(parts_->context) : Culled{};
 }
 
 const gl::Context& Renderer::context() const { return parts_->context; }

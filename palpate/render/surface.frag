@@ -2,7 +2,7 @@
 // A surface or a ball.
 
 in vec3 place;
-in vec3 upright;
+in vec3 facing;
 in vec4 along_u;  // the tangent, and whether v runs along the normal × it, 1, or against, -1
 in vec2 uv;
 in float sky;  // the share of it that the place sees
@@ -36,11 +36,11 @@ vec3 bumped(vec3 normal) {
 
 void main() {
     vec3 to_eye = normalize(eye.xyz - eye.w * place);
-    vec3 smooth_normal = dot(upright, upright) > 0 ? normalize(upright) : gl_FrontFacing ? to_eye : -to_eye;
+    vec3 smooth_normal = dot(facing, facing) > 0 ? normalize(facing) : gl_FrontFacing ? to_eye : -to_eye;
     vec3 normal = bumpy ? bumped(smooth_normal) : smooth_normal;
     if (!gl_FrontFacing) normal = -normal;
     vec3 own = coloured ? look * texture(colour_map, uv).rgb : look;
-    if (shows_normals) own = pow(0.5 + 0.5 * smooth_normal, vec3(2.2));  // so that the screen shows them evenly
+    if (shows_normals) own = pow(max(0.5 + 0.5 * smooth_normal, 0), vec3(2.2));  // so that the screen shows them evenly
     float share = dot(normal, to_light) > 0 ? key_share(place, normal, 2.5, 10) : 0;
     colour = vec4(shown(lit(normal, to_eye, own, shine, sky, share)), 1);
 }
