@@ -31,7 +31,7 @@ std::filesystem::path find_data(const std::string& name, const std::filesystem::
     if (const auto path = find(name, folder)) return *path;
     throw Error("cannot find the file", name,
                 "set PALPATE_DATA to the folder that holds it; the brain and the head come with Debian's "
-                "mricron-data, other meshes with scripts/get-data");
+                "mricron-data, other meshes with scripts/get-data or from where their scene says");
 }
 
 }  // namespace palpate

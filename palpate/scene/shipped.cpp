@@ -31,6 +31,9 @@ const std::vector<ShippedScene>& shipped_scenes() {
         scene("dragon",
 #include "embedded/dragon.toml.h"
               ),
+        scene("cow",
+#include "embedded/cow.toml.h"
+              ),
         scene("nodule",
 #include "embedded/nodule.toml.h"
               ),

@@ -91,6 +91,19 @@ TEST(Image, AJpegIsRead) {
     }
 }
 
+// A palette of colours, grey of 16 bits, colours without alpha.
+TEST(Image, TheFuzzersSeedsAreRead) {
+    int count = 0;
+    for (const auto& seed : std::filesystem::directory_iterator(PALPATE_SOURCE_DIR "/fuzz/seeds/image")) {
+        const Image image = read_image(seed.path());
+        EXPECT_EQ(4 * image.height, 3 * image.width) << seed.path();
+        EXPECT_GE(image.width, 8) << seed.path();
+        for (std::size_t i = 3; i < image.pixels.size(); i += 4) EXPECT_EQ(image.pixels[i], 255);
+        ++count;
+    }
+    EXPECT_GE(count, 4);
+}
+
 std::string png(int width, int height) {
     Scratch folder;
     write_png(colourful(width, height), folder / "picture.png");

@@ -472,6 +472,8 @@ std::string missing_file(const Scene& scene) {
             return file.empty() || is_found(file, scene.folder);
         });
         if (!found) return files[0];
+        for (const std::string& map : {body.colour_map, body.normal_map})
+            if (!map.empty() && !is_found(map, scene.folder)) return map;
     }
     return "";
 }
@@ -492,7 +494,7 @@ TEST_P(Shipped, BuildsAsItSays) {
         for (float inverse : body.inverse_mass) held += inverse == 0;
         if (!recipe.cage) EXPECT_LT(held, body.count() / 2);
     }
-    EXPECT_GT(held, 0u);
+    if (scene.colliders.empty()) EXPECT_GT(held, 0u);  // else it may stand on one
     // The heart's vessels end openly, and the dragon may stand in for itself; notes say so.
     if (scene.bodies[0].stand_ins.empty()) EXPECT_TRUE(made.notes.empty()) << made.notes[0];
 }
