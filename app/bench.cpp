@@ -86,7 +86,7 @@ void add_bench(CLI::App& app) {
     for (const Benchmark& benchmark : benchmarks()) names.push_back(benchmark.name);
     command
         ->add_option("names", arguments->names,
-                     "which: lattice, cloth, embed, which run if none is named; pipeline")
+                     "which: lattice, cloth, embed, which run if none is named; pipeline, heart")
         ->check(CLI::IsMember(names));
     command->add_option("--rounds", arguments->rounds, "how often each case runs, by turns")
         ->check(CLI::Range(1, 1000))

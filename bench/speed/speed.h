@@ -85,5 +85,6 @@ std::vector<Case> cloth_cases();
 std::vector<Case> embed_cases();
 
 Benchmark pipeline();  // the 2012 paper's tables
+Benchmark heart();     // the 2005 paper's figures
 
 }  // namespace palpate::speed
