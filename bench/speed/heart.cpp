@@ -6,6 +6,7 @@
 #include "palpate/body/embedding.h"
 #include "palpate/body/lattice.h"
 #include "palpate/render/renderer.h"
+#include "palpate/render/view.h"
 #include "palpate/scene/build.h"
 #include "tests/shapes.h"
 
@@ -92,8 +93,8 @@ class Shown {
           mesh_(on_card(*solver_) ? renderer.add(surface, skin_) : renderer.add(surface)),
           team_(threads) {
         const Bounds box = bounds_of(surface.positions);
-        picture_.camera.look_at = 0.5f * (box.low + box.high);
-        picture_.camera.eye = picture_.camera.look_at + vec3(0, 0, 2.5f * glm::length(box.high - box.low));
+        picture_.camera.look_at = box.centre();
+        picture_.camera.eye = picture_.camera.look_at + vec3(0, 0, 2.5f * glm::length(box.size()));
     }
 
     void step() { solver_->step(steps_a_frame * one_step); }
