@@ -20,7 +20,7 @@ using namespace palpate::speed;
 
 struct Arguments {
     std::vector<std::string> names;
-    std::filesystem::path json;
+    std::filesystem::path json, plot;
     int rounds = 15;
 };
 
@@ -47,12 +47,12 @@ nlohmann::json described(const Timings& timings) {
                          {"links_each", timings.cases[c].links},
                          {"bytes_moved_each", timings.cases[c].bytes},
                          {"bytes_kept_each", timings.cases[c].memory}});
-    return {{"limits", limits}, {"cases", cases}};
+    return {{"limits", limits}, {"cases", cases}, {"driver", timings.driver}};
 }
 
 void run_benchmarks(const Arguments& arguments) {
-    if (arguments.json.has_parent_path())
-        make_folder(arguments.json.parent_path());  // before the work, not after
+    for (const auto& file : {arguments.json, arguments.plot})
+        if (file.has_parent_path()) make_folder(file.parent_path());  // before the work, not after
     const unsigned cores = std::thread::hardware_concurrency();
     fmt::print(
         "Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
@@ -60,12 +60,14 @@ void run_benchmarks(const Arguments& arguments) {
     nlohmann::json all;
     for (const Benchmark& benchmark : benchmarks()) {
         const auto& wanted = arguments.names;
-        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), benchmark.name) == wanted.end())
-            continue;
-        const Timings timings = time(benchmark.cases(), arguments.rounds);
-        fmt::print("\n### {}: {}\n\n{}", benchmark.name, benchmark.about, markdown(timings, benchmark.unit));
+        const bool named = std::find(wanted.begin(), wanted.end(), benchmark.name) != wanted.end();
+        if (!named && !(wanted.empty() && benchmark.by_default)) continue;
+        const Timings timings = benchmark.run(arguments.rounds);
+        fmt::print("\n### {}: {}\n\n{}", benchmark.name, benchmark.about, benchmark.text(timings));
         std::fflush(stdout);
         all[benchmark.name] = described(timings);
+        if (benchmark.curves && !arguments.plot.empty())
+            write_plot(benchmark.name + ": " + benchmark.about, benchmark.curves(timings), arguments.plot);
     }
     if (!arguments.json.empty()) {
         all["processor"] = processor();
@@ -82,11 +84,14 @@ void add_bench(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bench", "Time Palpate against the limits of this machine");
     std::vector<std::string> names;
     for (const Benchmark& benchmark : benchmarks()) names.push_back(benchmark.name);
-    command->add_option("names", arguments->names, "which: lattice, cloth, embed; all, if none is named")
+    command
+        ->add_option("names", arguments->names,
+                     "which: lattice, cloth, embed, which run if none is named; pipeline, heart")
         ->check(CLI::IsMember(names));
     command->add_option("--rounds", arguments->rounds, "how often each case runs, by turns")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command->add_option("--json", arguments->json, "write the figures, JSON");
+    command->add_option("--plot", arguments->plot, "write the curves of pipeline, SVG");
     command->callback([arguments] { run_benchmarks(*arguments); });
 }

@@ -99,14 +99,10 @@ Finding look_at(Backend backend, const std::optional<gl::Context>& context) {
     Finding finding{std::string(name_of(backend)), "needs nothing"};
     if (backend == Backend::cpu)
         finding.found = fmt::format("{}, {} cores", cpu_instructions(), std::thread::hardware_concurrency());
-    if (on_gpu(backend)) {
+    finding.needs = needs(backend, context ? context->limits() : gl::Limits());
+    if (!finding.needs.empty()) {
         finding.found = "a step on the GPU";
-        if (!context) {
-            finding.problem = "needs OpenGL 4.5";
-            return finding;
-        }
-        finding.needs = needs(backend, context->limits());
-        finding.problem = shortage(finding.needs);
+        finding.problem = context ? shortage(finding.needs) : "needs OpenGL 4.5";
     }
     if (finding.problem.empty())
         finding.problem = problem_of([&] { try_out(backend, context ? &*context : nullptr); });
@@ -193,6 +189,7 @@ void print(const Diagnosis& all) {
     std::vector<std::pair<std::string, std::string>> rows;
     for (const Finding& one : all.findings) {
         rows.emplace_back(one.part, one.problem.empty() ? "ok: " + one.found : "no: " + one.problem);
+        if (all.driver.is_null()) continue;
         for (const Need& need : one.needs) {
             const std::string wanted =
                 need.needed > 0 ? fmt::format(" ({} needed)", grouped(need.needed)) : "";

@@ -1,6 +1,7 @@
 #include "bench/speed/speed.h"
 
 #include "palpate/base/clock.h"
+#include "palpate/gl/context.h"
 #include "palpate/solver/scheme.h"
 #include "palpate/solver/solver.h"
 
@@ -20,9 +21,10 @@ Rate rate_of(std::vector<double> rates) {
 }
 
 // Read or written by the passes of a step, with nothing fetched twice: the state where forces are taken, that
-// where the step began, the sum, the shares of 18 links (eight bytes) and the inverse mass.
-double bytes_of_a_step(Integrator integrator) {
-    constexpr double state = 24, fixed = 12;
+// where the step began, the sum, the shares of 18 links (eight bytes) and the inverse mass. On a GPU all is
+// in fours.
+double bytes_of_a_step(Integrator integrator, bool gpu) {
+    const double state = gpu ? 32 : 24, fixed = gpu ? 16 : 12;
     double bytes = 0;
     for (const Stage& stage : scheme(integrator).stages) {
         const bool first = &stage == &scheme(integrator).stages.front();
@@ -35,8 +37,17 @@ double bytes_of_a_step(Integrator integrator) {
 
 }  // namespace
 
-Timings time(std::vector<Case> cases, int rounds) {
-    const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
+const Rate* Timings::find(const std::string& name) const {
+    for (std::size_t c = 0; c < cases.size(); ++c)
+        if (cases[c].name == name) return &rates[c];
+    return nullptr;
+}
+
+int times_for(double seconds) { return std::clamp(int(0.05 / seconds), 1, 100); }
+
+Timings time(std::vector<Case> cases, int rounds, int limits) {
+    const std::size_t most =
+        limits < 0 ? std::max(1u, std::thread::hardware_concurrency()) : std::size_t(limits);
     std::vector<std::vector<double>> rates(cases.size()), links(most), bytes(most);
     auto run = [](const std::function<Work()>& work, std::vector<double>& into) {
         const Work done = work();
@@ -56,28 +67,29 @@ Timings time(std::vector<Case> cases, int rounds) {
     return timings;
 }
 
-Case stepping(std::string name, const Body& body, const Simulation& how) {
+Case stepping(std::string name, const Body& body, const Simulation& how, const gl::Context* context) {
     Simulation simulation = how;
     simulation.step = 1e-5;
     simulation.force = true;
     simulation.frame = 1e-3;
-    std::shared_ptr<Solver> solver = make_solver(body, simulation);
+    std::shared_ptr<Solver> solver = make_solver(body, simulation, context);
     const double nodes = double(body.count());
-    // About a twentieth of a second, found by trying.
-    solver->step(simulation.step);
-    const double begin = now();
-    solver->step(4 * simulation.step);
-    const int steps = std::clamp(int(0.05 / ((now() - begin) / 4)), 2, 100);
+    auto go = [=](int steps) {
+        const double start = now();
+        solver->step(steps * simulation.step);
+        if (context) context->finish();
+        return now() - start;
+    };
+    go(4);  // a driver may compile meanwhile
+    const int steps = std::max(times_for(go(4) / 4), 2);
     double forces = 0;  // a step
     for (const Stage& stage : scheme(simulation.integrator).stages) forces += stage.kick > 0;
     return {std::move(name),
             [=] {
-                const double start = now();
-                const Stats stats = solver->step(steps * simulation.step);
-                return Work{now() - start, nodes * stats.steps};
+                return Work{go(steps), nodes * steps};
             },
             table(body).width * forces,
-            bytes_of_a_step(simulation.integrator),
+            bytes_of_a_step(simulation.integrator, solver->gpu_nodes().positions != 0),
             double(solver->memory()) / nodes,
             simulation.threads};
 }
@@ -114,11 +126,17 @@ std::string markdown(const Timings& timings, const std::string& unit) {
 }
 
 const std::vector<Benchmark>& benchmarks() {
+    auto plain = [](std::string name, std::string about, std::string unit, std::vector<Case> (*cases)()) {
+        return Benchmark{std::move(name), std::move(about), true,
+                         [cases](int rounds) { return time(cases(), rounds); },
+                         [unit](const Timings& timings) { return markdown(timings, unit); }};
+    };
     static const std::vector<Benchmark> all = {
-        {"lattice", "steps of lattices, against the machine's limits and Bullet", "node-steps",
-         lattice_cases},
-        {"cloth", "steps of cloths", "node-steps", cloth_cases},
-        {"embed", "a surface of 160,000 vertices carried by its nodes", "vertices", embed_cases}};
+        plain("lattice", "steps of lattices, against the machine's limits and Bullet", "node-steps",
+              lattice_cases),
+        plain("cloth", "steps of cloths", "node-steps", cloth_cases),
+        plain("embed", "a surface of 160,000 vertices carried by its nodes", "vertices", embed_cases),
+        pipeline(), heart()};
     return all;
 }
 

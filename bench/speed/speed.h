@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/body/body.h"
 #include "palpate/body/simulation.h"
+#include "palpate/run/plot.h"
 
 #include <functional>
 #include <string>
@@ -8,6 +9,10 @@
 
 // How fast Palpate is: against what this machine can do at best, and against others. `palpate bench` prints
 // it.
+
+namespace palpate::gl {
+class Context;
+}
 
 namespace palpate::speed {
 
@@ -38,16 +43,25 @@ struct Timings {
     std::vector<Case> cases;
     std::vector<Rate> rates;                // of the cases
     std::vector<Rate> arithmetic, copying;  // links and bytes a second on 1, 2, ... threads
+    std::string driver = {};                // OpenGL's, in a sentence; empty where it was not needed
+
+    /// None of that name: null.
+    const Rate* find(const std::string& name) const;
 };
-Timings time(std::vector<Case> cases, int rounds);
+/// `limits`: on how many threads those are measured; the machine's by default.
+Timings time(std::vector<Case> cases, int rounds, int limits = -1);
 
 /// The limits: springs that never leave the registers (for each a reciprocal root and 13 operations), and a
 /// copy that is too large for the caches.
 Work arithmetic(int threads);
 Work copying(int threads);
 
-/// Steps of a body, of 10 µs each.
-Case stepping(std::string name, const Body& body, const Simulation& how);
+/// Steps of a body, of 10 µs each, many in a call. In a context if it moves on the GPU, which is waited for.
+Case stepping(std::string name, const Body& body, const Simulation& how,
+              const gl::Context* context = nullptr);
+
+/// How often something of so many seconds has to be done for a twentieth of a second.
+int times_for(double seconds);
 
 /// Bullet's soft body of the same nodes and springs: a pass over its links, or a whole step. No case where
 /// Palpate was built without it.
@@ -58,13 +72,19 @@ std::string markdown(const Timings& timings, const std::string& unit);
 
 /// A benchmark, which `palpate bench` knows by its name.
 struct Benchmark {
-    std::string name, about, unit;
-    std::vector<Case> (*cases)();
+    std::string name, about;
+    bool by_default;  // or only if it is asked for: it takes minutes
+    std::function<Timings(int rounds)> run;
+    std::function<std::string(const Timings&)> text;                // Markdown
+    std::function<std::vector<Panel>(const Timings&)> curves = {};  // for a plot; or none
 };
 const std::vector<Benchmark>& benchmarks();
 
 std::vector<Case> lattice_cases();
 std::vector<Case> cloth_cases();
 std::vector<Case> embed_cases();
+
+Benchmark pipeline();  // the 2012 paper's tables
+Benchmark heart();     // the 2005 paper's figures
 
 }  // namespace palpate::speed

@@ -269,6 +269,8 @@ void Context::read_texture(unsigned texture, unsigned format, unsigned type, std
     glGetTextureImage(texture, 0, format, type, static_cast<GLsizei>(to.size()), to.data());
 }
 
+void Context::finish() const { glFinish(); }
+
 long Context::reads() const { return parts_->reads; }
 
 const std::string& Context::renderer() const { return parts_->renderer; }

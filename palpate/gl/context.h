@@ -51,6 +51,9 @@ class Context {
     void read(unsigned buffer, std::span<std::byte> to) const;
     void read_texture(unsigned texture, unsigned format, unsigned type, std::span<std::byte> to) const;
 
+    /// Waits until the GPU has done all that it was told.
+    void finish() const;
+
     /// How often the host has read from it.
     long reads() const;
 

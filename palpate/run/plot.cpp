@@ -12,7 +12,8 @@ namespace palpate {
 namespace {
 
 constexpr double width = 800, panel_height = 260, left = 80, right = 30, top = 50, between = 70;
-constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"};  // told apart by all eyes
+constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73",
+                                   "#cc79a7", "#e69f00", "#56b4e9"};  // told apart by all eyes
 
 // Ticks at round numbers that cover a range.
 struct Axis {
@@ -27,14 +28,27 @@ struct Axis {
     double part(double value) const { return (value - low) / (high - low); }
 };
 
+// Where a value lies on an axis, before the axis is stretched: nowhere (NaN) if that needs its logarithm and
+// it has none.
+double place(const Panel& panel, double value) {
+    if (!panel.logarithmic) return value;
+    return value > 0 ? std::log10(value) : std::nan("");
+}
+
 Axis axis_of(const Panel& panel, std::vector<double> Curve::*values, int ticks) {
-    double least = 0, most = 0;
+    std::vector<double> places;
+    if (!panel.logarithmic) places.push_back(0);
     for (const Curve& curve : panel.curves)
-        for (double v : curve.*values) {
-            least = std::min(least, v);
-            most = std::max(most, v);
-        }
-    return {least, most, ticks};
+        for (double v : curve.*values)
+            if (const double at = place(panel, v); std::isfinite(at)) places.push_back(at);
+    if (places.empty()) places.push_back(0);
+    const auto [least, most] = std::minmax_element(places.begin(), places.end());
+    if (!panel.logarithmic) return {*least, *most, ticks};
+    Axis axis(*least, *most, ticks);
+    axis.tick = 1;
+    axis.low = std::floor(*least);
+    axis.high = std::max(std::ceil(*most), axis.low + 1);
+    return axis;
 }
 
 std::string escape(std::string_view text) {
@@ -54,7 +68,8 @@ std::string line(double x1, double y1, double x2, double y2, const char* colour)
 }
 
 // A tick's number without the digits that rounding leaves behind.
-std::string number(double value, double tick) {
+std::string number(const Panel& panel, double value, double tick) {
+    if (panel.logarithmic) return fmt::format("{:g}", std::pow(10, std::round(value)));
     return fmt::format("{:g}", std::round(value / tick * 1e6) / 1e6 * tick);
 }
 
@@ -66,10 +81,11 @@ std::string draw(const Panel& panel, double above) {
 
     std::string svg;
     for (double v = ys.low; v <= ys.high + 0.5 * ys.tick; v += ys.tick)
-        svg += line(left, y(v), left + w, y(v), "#ddd") + text(left - 8, y(v) + 4, "end", number(v, ys.tick));
+        svg += line(left, y(v), left + w, y(v), "#ddd") +
+               text(left - 8, y(v) + 4, "end", number(panel, v, ys.tick));
     for (double v = xs.low; v <= xs.high + 0.5 * xs.tick; v += xs.tick)
         svg += line(x(v), above + h, x(v), above + h + 5, "#555") +
-               text(x(v), above + h + 20, "middle", number(v, xs.tick));
+               text(x(v), above + h + 20, "middle", number(panel, v, xs.tick));
     svg += line(left, above + h, left + w, above + h, "#555");
     svg += text(left + w / 2, above + h + 40, "middle", panel.x_label);
     svg += text(22, above + h / 2, "middle", panel.y_label,
@@ -81,8 +97,9 @@ std::string draw(const Panel& panel, double above) {
         const char* colour = colours[c % std::size(colours)];
         std::string points;
         for (std::size_t i = 0; i < curve.x.size(); ++i)
-            if (std::isfinite(curve.y[i]))
-                points += fmt::format("{:.1f},{:.1f} ", x(curve.x[i]), y(curve.y[i]));
+            if (const double px = place(panel, curve.x[i]), py = place(panel, curve.y[i]);
+                std::isfinite(px) && std::isfinite(py))
+                points += fmt::format("{:.1f},{:.1f} ", x(px), y(py));
         svg += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n",
                            points, colour);
         svg += text(left + w - 4, key, "end", curve.name, fmt::format("fill=\"{}\"", colour));

@@ -16,6 +16,7 @@ struct Curve {
 struct Panel {
     std::string x_label, y_label;
     std::vector<Curve> curves;
+    bool logarithmic = false;  // both axes, in powers of ten; what is not above zero is left out
 };
 
 /// Writes panels below each other as an SVG, with axes from round numbers to round numbers. Throws Error.

@@ -358,6 +358,24 @@ TEST(Plot, SurvivesOddCurves) {
     EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
 }
 
+TEST(Plot, PowersLieOnALineWhereAxesAreLogarithmic) {
+    Scratch scratch;
+    Panel panel{"x", "y", {{"square", {1, 10, 0, 100, 1000}, {1, 100, 5, 1e4, 1e6}}}, true};
+    write_plot("", {panel}, scratch / "p.svg");
+    const std::string svg = read_text(scratch / "p.svg");
+    const std::string before = "<polyline points=\"";
+    std::istringstream points(svg.substr(svg.find(before) + before.size()));
+    double x[4], y[4];
+    char comma;
+    for (int i = 0; i < 4; ++i) ASSERT_TRUE(points >> x[i] >> comma >> y[i]) << svg;  // the 0 is left out
+    for (int i = 1; i < 4; ++i) {
+        EXPECT_NEAR(x[i] - x[i - 1], (x[3] - x[0]) / 3, 0.11);
+        EXPECT_NEAR(y[i] - y[i - 1], (y[3] - y[0]) / 3, 0.11);
+    }
+    EXPECT_GT(x[3] - x[0], 300);
+    EXPECT_LT(y[3] - y[0], -200);
+}
+
 // All that a shipped scene does in its first third of a second, with its surface written, goes well.
 TEST(Run, EveryShippedSceneStarts) {
     Scratch scratch;

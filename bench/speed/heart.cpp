@@ -1,0 +1,243 @@
+// The figures of the 2005 paper, section 3.4.
+#include "bench/speed/drawing.h"
+#include "palpate/base/error.h"
+#include "palpate/base/team.h"
+#include "palpate/body/cloth.h"
+#include "palpate/body/embedding.h"
+#include "palpate/body/lattice.h"
+#include "palpate/render/renderer.h"
+#include "palpate/render/view.h"
+#include "palpate/scene/build.h"
+#include "tests/shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace palpate::speed {
+namespace {
+
+constexpr int steps_a_frame = 15;
+constexpr double one_step = 1e-5;  // s
+constexpr Mapping mappings[] = {Mapping::constant, Mapping::interpolated, Mapping::trilinear, Mapping::frames,
+                                Mapping::one_to_one};
+
+// A body and surfaces that hang on it.
+struct Subject {
+    std::string about;
+    Body body;
+    std::vector<Mesh> surfaces;
+};
+
+int rings_for(double faces) { return int(std::lround(0.5 * (1 + std::sqrt(1 + faces)))); }  // 4 r (r - 1)
+
+Subject the_heart() {
+    Subject heart{"the shipped scene heart", {}, {}};
+    constexpr int faces[] = {50'000, 76'000};
+    try {
+        for (int count : faces) {
+            const Change change = fmt::format("body.heart.faces={}", count);
+            Models made = build(read_scene("heart", std::span(&change, 1)));
+            heart.surfaces.push_back(std::move(made.models.front().surface));
+            if (count == faces[0]) heart.body = std::move(made.models.front().body);
+        }
+    } catch (const Error& error) {
+        fmt::print(stderr, "heart: not available, an ellipsoid stands in: {}\n", error.what());
+        heart = {"an ellipsoid in place of the heart, which is not in PALPATE_DATA", {}, {}};
+        for (int count : faces)
+            heart.surfaces.push_back(ellipsoid(vec3(0.05f, 0.06f, 0.08f), rings_for(count)));
+        heart.body = lattice(
+            heart.surfaces[0],
+            {.nodes = 20'000, .material = {.youngs_modulus = 40'000, .density = 1060, .damping = 20}});
+    }
+    return heart;
+}
+
+Subject the_dragon() {
+    try {
+        Model made = std::move(build(read_scene("dragon")).models.front());
+        return {"the shipped scene dragon", std::move(made.body), {std::move(made.surface)}};
+    } catch (const Error& error) {
+        fmt::print(stderr, "dragon: not available, an ellipsoid stands in: {}\n", error.what());
+        Subject sheet{"an ellipsoid in place of the dragon, which is not in PALPATE_DATA",
+                      cloth(ivec2(6, 3), 0.042f, {.density = 5, .damping = 10}),
+                      {ellipsoid(vec3(0.1f, 0.05f, 0.03f), rings_for(9'971))}};
+        for (vec3& at : sheet.surfaces[0].positions) at += vec3(0.105f, 0.042f, 0);
+        return sheet;
+    }
+}
+
+Simulation with(const Machine::Mover& mover) {
+    return {.backend = mover.backend,
+            .threads = mover.threads,
+            .late = true,
+            .step = one_step,
+            .force = true,
+            .frame = steps_a_frame * one_step};
+}
+
+bool on_card(const Solver& solver) { return solver.gpu_nodes().positions != 0; }
+
+// A surface that is drawn where a solver's nodes are: mapped on the GPU if they are there, else on the CPU.
+class Shown {
+ public:
+    Shown(Renderer& renderer, const Mesh& surface, const Body& body, Mapping mapping,
+          std::shared_ptr<Solver> solver, int threads)
+        : renderer_(renderer),
+          solver_(std::move(solver)),
+          skin_(embed(surface, body, mapping)),
+          mesh_(on_card(*solver_) ? renderer.add(surface, skin_) : renderer.add(surface)),
+          team_(threads) {
+        const Bounds box = bounds_of(surface.positions);
+        picture_.camera.look_at = box.centre();
+        picture_.camera.eye = picture_.camera.look_at + vec3(0, 0, 2.5f * glm::length(box.size()));
+    }
+
+    void step() { solver_->step(steps_a_frame * one_step); }
+
+    void draw() {
+        Surface shown{.mesh = mesh_};
+        if (on_card(*solver_)) {
+            shown.gpu_nodes = solver_->gpu_nodes();
+        } else {
+            deform(skin_, solver_->nodes(), positions_, normals_, nullptr, &team_);
+            shown.positions = positions_;
+            shown.normals = normals_;
+        }
+        picture_.surfaces = {shown};
+        renderer_.draw(picture_);
+    }
+
+ private:
+    Renderer& renderer_;
+    std::shared_ptr<Solver> solver_;
+    Embedding skin_;
+    int mesh_;
+    Team team_;
+    std::vector<vec3> positions_, normals_;
+    Picture picture_;
+};
+
+// Where a case stands in the tables; its name is all three.
+struct Place {
+    std::string table, row, column;
+    std::string name() const { return table + " / " + row + " / " + column; }
+};
+
+Place place_of(const std::string& name) {
+    const auto first = name.find(" / "), last = name.rfind(" / ");
+    return {name.substr(0, first), name.substr(first + 3, last - first - 3), name.substr(last + 3)};
+}
+
+std::string described(const Subject& subject, const Mesh& surface) {
+    return fmt::format("{} ({} nodes, {} faces)", subject.about, subject.body.count(),
+                       surface.triangles.size());
+}
+
+// One that keeps the nodes where they are, for frames in which nothing moves.
+const Machine::Mover* first(const Machine& machine, bool gpu) {
+    const Machine::Mover* found = nullptr;
+    for (const auto& mover : machine.movers) {
+        const bool here = mover.backend == Backend::cpu;
+        if (gpu ? !here && mover.backend != Backend::reference && !found : here) found = &mover;
+    }
+    return found;
+}
+
+const std::string step_table = "Milliseconds a simulation step (2005: 2.22)";
+const std::string frame_table =
+    "Milliseconds a drawn frame, mapped by the CPU or by the GPU (2005: 5.26 constant, 6.67 interpolated)";
+const std::string whole_table = "Frames a second with 15 steps a frame (2005: 25)";
+
+Timings run(int rounds) {
+    const Machine machine;
+    const Subject heart = the_heart(), dragon = the_dragon();
+    std::vector<Case> cases;
+    for (const auto& mover : machine.movers)
+        cases.push_back(steps(Place{step_table, described(heart, heart.surfaces[0]), mover.name}.name(),
+                              heart.body, machine, mover, Integrator::verlet));
+    std::optional<Renderer> renderer;
+    if (machine.gl()) renderer.emplace(Offscreen(), machine.gl());
+    // Frames that stand still, and frames with steps.
+    auto add = [&](const std::string& table, const Subject& subject, const Mesh& surface, Mapping mapping,
+                   const Machine::Mover& mover, const std::string& column, bool moves) {
+        std::shared_ptr<Solver> solver = make_solver(subject.body, with(mover), machine.gl());
+        auto shown =
+            std::make_shared<Shown>(*renderer, surface, subject.body, mapping, solver, mover.threads);
+        const std::string row = described(subject, surface) + ", " + std::string(name_of(mapping));
+        cases.push_back(repeating(
+            Place{table, row, column}.name(),
+            [=] {
+                if (moves) shown->step();
+                shown->draw();
+            },
+            machine.gl()));
+    };
+    for (bool gpu : {false, true}) {
+        const Machine::Mover* still = first(machine, gpu);
+        if (!renderer || !still) continue;
+        const std::string column = gpu ? "GPU" : still->name;
+        for (const Mesh& surface : heart.surfaces)
+            for (Mapping mapping : mappings) add(frame_table, heart, surface, mapping, *still, column, false);
+        for (Mapping mapping : {Mapping::constant, Mapping::interpolated})
+            add(frame_table, dragon, dragon.surfaces[0], mapping, *still, column, false);
+    }
+    for (const auto& mover : machine.movers)
+        for (Mapping mapping : {Mapping::constant, Mapping::interpolated})
+            if (renderer) add(whole_table, heart, heart.surfaces[0], mapping, mover, mover.name, true);
+    Timings timings = time(std::move(cases), rounds, 0);
+    for (Case& of : timings.cases) of.run = {};  // before the context ends
+    timings.driver = machine.driver();
+    return timings;
+}
+
+void note(std::vector<std::string>& list, const std::string& name) {
+    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+}
+
+std::string text(const Timings& timings) {
+    std::string text = timings.driver + "\n\nBest, and in brackets median. 2005 was a GeForce 6800 Ultra.\n";
+    for (const std::string& table : {step_table, frame_table, whole_table}) {
+        std::vector<std::string> rows, columns;
+        for (const Case& of : timings.cases)
+            if (const Place place = place_of(of.name); place.table == table) {
+                note(rows, place.row);
+                note(columns, place.column);
+            }
+        if (rows.empty()) continue;
+        std::vector<std::string> cells{""};
+        cells.insert(cells.end(), columns.begin(), columns.end());
+        cells.emplace_back("GPU over CPU");
+        text += "\n" + table + ":\n\n" + head(cells);
+        for (const std::string& which : rows) {
+            cells = {which};
+            double cpu = 0, gpu = 0;  // the fastest
+            for (const std::string& column : columns) {
+                const std::string name = Place{table, which, column}.name();
+                const Rate* rate = timings.find(name);
+                if (rate) {
+                    double& fastest = column.starts_with("cpu") || column == "reference" ? cpu : gpu;
+                    fastest = std::max(fastest, rate->best);
+                }
+                cells.push_back(rate && table == whole_table
+                                    ? fmt::format("{:.1f} ({:.1f})", rate->best, rate->median)
+                                    : milliseconds(timings, name));
+            }
+            cells.push_back(cpu > 0 && gpu > 0 ? fmt::format("{:.2f}", gpu / cpu) : "–");
+            text += row(cells);
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+Benchmark heart() {
+    return {"heart", "a detailed surface on a coarse body, the figures of 2005", false, run, text};
+}
+
+}  // namespace palpate::speed
