@@ -190,6 +190,14 @@ TEST_P(EveryWay, UndoesACall) {
 
 // ---- what a GPU has of its own ----
 
+// What it tells those who draw is where the nodes are.
+void expect_bounds(const Solver& solver) {
+    Bounds box;
+    for (vec3 p : solver.nodes().positions) box.include(p);
+    EXPECT_EQ(solver.gpu_nodes().bounds.low, box.low);
+    EXPECT_EQ(solver.gpu_nodes().bounds.high, box.high);
+}
+
 State wild(const Solver& solver) {
     State state = solver.save();
     state.velocities[100] = {5000, 0, 0};
@@ -205,6 +213,21 @@ TEST_P(EveryGpu, IsAsItWasBeforeACallThatTearsIt) {
     EXPECT_TRUE(solver->step(5e-3).diverged);
     EXPECT_TRUE(solver->save().positions == before.positions);
     EXPECT_TRUE(solver->save().velocities == before.velocities);
+    expect_bounds(*solver);
+}
+
+// It may be given what is torn already: that is found by the next call, which leaves it so.
+TEST_P(EveryGpu, TakesAStateThatIsTorn) {
+    const Body body = lattice({9, 5, 7}, 0.01f, tissue);
+    auto solver = make_solver(body, {.backend = GetParam(), .step = 1e-4, .force = true}, context());
+    State torn = solver->save();
+    torn.positions[100] += dvec3(5, 0, 0);
+    solver->restore(torn);
+    EXPECT_LE(furthest_apart(solver->save().positions, torn.positions), 1e-6);
+    expect_bounds(*solver);
+    const State before = solver->save();
+    EXPECT_TRUE(solver->step(1e-4).diverged);
+    EXPECT_TRUE(solver->save().positions == before.positions);
 }
 
 // Told of a call late, it goes back to before that call, over the one since.

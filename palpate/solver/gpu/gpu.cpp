@@ -1,6 +1,5 @@
 #include "palpate/solver/gpu/gpu.h"
 
-#include "palpate/base/error.h"
 #include "palpate/gl/context.h"
 #include "palpate/gl/program.h"
 #include "palpate/solver/gpu/answers.h"
@@ -11,9 +10,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <cstring>
-#include <deque>
 #include <optional>
 
 namespace palpate {
@@ -75,14 +71,14 @@ class Gpu final : public Solver {
           quiet_(quiet_pass()),
           shown_positions_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           shown_normals_(gl::Buffer::room(body_.count() * sizeof(vec4))),
-          adders_(std::clamp(groups(world_.rim_count()) * group, group, most_adders)),
+          adders_(std::clamp(groups(int(placement_.rim.size())) * group, group, most_adders)),
           answers_(context_, adders_) {
         for (Where where : {current, between, further, sum})
             if (needs(scheme_, where) || (where == further && scheme_.stages.size() > 1))
                 states_[where].emplace(make_state());
         if (simulation.contact > 0 || simulation.pull > 0) touched();  // before it has to be quick
         if (adds_up()) next_sum_.emplace(make_state());
-        for (int i = 0; i < (simulation_.late ? 2 : 1); ++i) pasts_.push_back({make_state(), 0, {}});
+        for (int i = 0; i < (simulation_.late ? 2 : 1); ++i) pasts_.push_back({make_state(), 0, {}, {}});
         restore({std::vector<dvec3>(body_.positions.begin(), body_.positions.end()),
                  std::vector<dvec3>(body_.count(), dvec3(0)), 0});
     }
@@ -98,7 +94,7 @@ class Gpu final : public Solver {
         const Touched* tools = influences.presses.empty() && influences.drags.empty() ? nullptr : &touched();
         Pipeline& pipeline = tools ? *tools->pipeline : *alone_;
         if (tools) answers_.clear_impulses();
-        bind();
+        world_.bind();
         Pass constant = quiet_;
         constant.wind = vec4(influences.wind, simulation_.air);
         for (std::size_t d = 0; d < influences.drags.size(); ++d)
@@ -170,11 +166,12 @@ class Gpu final : public Solver {
             velocities[slot] = vec4(vec3(state.velocities[i]), float(world_.guide_of(i)));
         }
         world_.stand(state);
-        for (auto* field : {&positions, &velocities})
-            for (auto& one : states_)  // the margins of all states are the same, and stay so
-                if (one)
-                    (field == &positions ? one->positions : one->velocities)
-                        .put(std::as_bytes(std::span(*field)));
+        for (auto& one :
+             states_) {  // all of them, because what lies between the nodes has to be there in each
+            if (!one) continue;
+            one->positions.put(std::as_bytes(std::span(positions)));
+            one->velocities.put(std::as_bytes(std::span(velocities)));
+        }
         lag_ = state.lag;
         if (lag_ > 0 && !scheme_.staggered) {  // a staggered scheme's state: this one wants velocities of now
             velocities = velocities_now();
@@ -183,10 +180,10 @@ class Gpu final : public Solver {
         }
         answers_.drop_all();
         history_ = 0;
-        bind();
+        world_.bind();
         close();
         answers_.ask({}, {});
-        settle();
+        bounds_ = answers_.oldest().bounds;
     }
 
     std::size_t memory() const override {
@@ -206,6 +203,7 @@ class Gpu final : public Solver {
         Moving state;
         double lag;
         std::vector<vec3> guided;
+        Bounds bounds;  // as known then
     };
 
     // What is needed where tools act.
@@ -233,7 +231,6 @@ class Gpu final : public Solver {
 
     // ---- a pass ----
 
-    void bind() const { world_.bind(); }
     void look_at(const Moving& moving) const {
         moving.positions.bind(0);
         moving.velocities.bind(1);
@@ -269,7 +266,7 @@ class Gpu final : public Solver {
     void add_impulses(const Touched& tools, double seconds) const {
         tools.impulses.use();
         tools.impulses.set("seconds", float(seconds));
-        tools.impulses.set("count", world_.rim_count());
+        tools.impulses.set("count", int(placement_.rim.size()));
         world_.bind_rim(9);
         answers_.bind_impulses();
         glDispatchCompute(GLuint(adders_ / group), 1, 1);
@@ -323,6 +320,7 @@ class Gpu final : public Solver {
         past.state.velocities.copy(states_[current]->velocities);
         past.lag = lag_;
         past.guided = world_.guided();
+        past.bounds = bounds_;
         history_ = std::min(history_ + 1, int(pasts_.size()));
     }
 
@@ -333,9 +331,10 @@ class Gpu final : public Solver {
         states_[current]->velocities.copy(past.state.velocities);
         lag_ = past.lag;
         world_.stand(past.guided);
+        bounds_ = past.bounds;
         std::rotate(pasts_.begin(), pasts_.begin() + calls, pasts_.end());
         history_ -= calls;
-        bind();
+        world_.bind();
         close();
     }
 
@@ -352,7 +351,7 @@ class Gpu final : public Solver {
         context_.make_current();
         Pass pass = quiet_;
         pass.kick = float(lag_ / (1 + body_.damping * lag_));
-        bind();
+        world_.bind();
         world_.upload(pass);
         const Moving &at = *states_[current],
                      &free = *states_[scheme_.stages.size() == 1 ? between : further];

@@ -31,18 +31,25 @@ Placement::Placement(const Body& body) {
         slots = int(body.count());
         slot.resize(body.count());
         std::iota(slot.begin(), slot.end(), 0);
-        return;
+    } else {
+        lay_grid(*stencil);
     }
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.area[i] > 0) rim.push_back(slot[i]);
+}
+
+void Placement::lay_grid(const Stencil& stencil) {
+    const Box box = box_of(stencil);
     auto number = [&](ivec3 p) { return (p.z * box.dims.y + p.y) * box.dims.x + p.x; };
     int room = 0;
-    for (const Link& link : stencil->links) {
+    for (const Link& link : stencil.links) {
         offsets.push_back(number(link.offset));
         room = std::max(room, std::abs(offsets.back()));
     }
     dims = box.dims;
     first = room;
-    for (ivec3 p : stencil->at) slot.push_back(first + number(p - box.low));
-    slots = room + int(volume) + room;
+    for (ivec3 p : stencil.at) slot.push_back(first + number(p - box.low));
+    slots = room + box.dims.x * box.dims.y * box.dims.z + room;
 }
 
 }  // namespace palpate::gpu

@@ -18,6 +18,10 @@ struct Placement {
     std::vector<int> offsets;  // in slots, along each link of a grid
     int slots = 0;             // with the room on both sides
     std::vector<int> slot;     // of each node
+    std::vector<int> rim;      // the slots of the nodes of the outside, which alone tips touch
+
+ private:
+    void lay_grid(const Stencil& stencil);
 };
 
 }  // namespace palpate::gpu

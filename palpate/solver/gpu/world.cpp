@@ -1,7 +1,7 @@
 #include "palpate/solver/gpu/world.h"
 
 #include "palpate/solver/gpu/tiles.h"
-#include "palpate/solver/scheme.h"
+#include "palpate/solver/schedule.h"
 
 #include <fmt/format.h>
 
@@ -53,14 +53,6 @@ std::vector<uvec4> traits_of(const Body& body, const Placement& placement) {
         }
     }
     return traits;
-}
-
-// The slots of the nodes that have an outside.
-std::vector<int> rim_of(const Body& body, const Placement& placement) {
-    std::vector<int> rim;
-    for (std::size_t i = 0; i < body.count(); ++i)
-        if (body.area[i] > 0) rim.push_back(placement.slot[i]);
-    return rim;
 }
 
 // Springs written out, those of each link together, so that neighbouring nodes read side by side.
@@ -122,13 +114,13 @@ std::size_t count_guides(const Body& body) {
 
 Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
              bool touched, bool tiled) {
-    const bool sums = scheme(simulation.integrator).stages.front().part > 0;
+    const bool sums = needs(scheme(simulation.integrator), sum);
     std::string text = "#version 450 core\n";
     auto define = [&](bool holds, const std::string& what) {
         if (holds) text += "#define " + what + "\n";
     };
     const auto* stencil = placement.grid ? &body.stencil() : nullptr;
-    define(true, fmt::format("LINKS {}", stencil ? int(stencil->links.size()) : table(body).width));
+    define(true, fmt::format("LINKS {}", make_pass(body, simulation).links));
     define(!stencil, "TABLE");
     define(stencil && stencil->in_quarters(), "QUARTERS");
     define(stencil && !stencil->strength.empty(), "STRENGTH");
@@ -159,8 +151,7 @@ World::World(const Body& body, const Simulation& simulation, const Placement& pl
     : traits_(field(GL_RGBA32UI, traits_of(body, placement))),
       ties_(ties_of(body, placement)),
       slots_(field(GL_R32I, placement.slot)),
-      rim_(field(GL_R32I, rim_of(body, placement))),
-      rim_count_(int(rim_of(body, placement).size())),
+      rim_(field(GL_R32I, placement.rim)),
       corners_(field(GL_RGBA32F, with_room(polygon_corners(simulation)))),
       distances_(field(GL_R32F, all_distances(simulation))),
       grids_(field(GL_RGBA32F, grids_of(simulation))),

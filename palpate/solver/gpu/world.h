@@ -23,8 +23,7 @@ class World {
     /// Binds it for the shaders of this body; their samplers, and the block of the pass.
     void bind() const;
 
-    // The nodes of the outside, which alone tips touch.
-    int rim_count() const { return rim_count_; }
+    /// The nodes of the outside.
     void bind_rim(GLuint unit) const { rim_.bind(unit); }
 
     /// Makes it the pass of what runs next.
@@ -50,7 +49,6 @@ class World {
     void for_each_guided(std::span<const Move> moves, Do act) const;
 
     gl::Field traits_, ties_, slots_, rim_;
-    int rim_count_;
     gl::Field corners_, distances_, grids_;
     std::vector<int> guide_;    // of each node
     std::vector<vec3> guided_;  // where each guide's node is
