@@ -10,9 +10,6 @@
 #include <cmath>
 
 namespace palpate::studies {
-namespace {
-
-constexpr double pi = 3.14159265358979;
 
 Body chain(const Damping& damping) {
     std::vector<vec3> positions;
@@ -28,6 +25,10 @@ Body chain(const Damping& damping) {
     body.link_damping = damping.of_links;
     return body;
 }
+
+namespace {
+
+constexpr double pi = 3.14159265358979;
 
 State swing(const Body& body, Integrator integrator, int steps) {
     const double seconds = 0.25;

@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/body/body.h"
 #include "palpate/body/simulation.h"
 
 #include <vector>
@@ -17,8 +18,11 @@ struct Damping {
 inline constexpr Damping dampings[] = {
     {"none", 0, 0}, {"of velocities", 4, 0}, {"along the springs", 0, 4e-4f}};
 
-/// log2 of how much smaller the error gets when the step is halved, from `steps` to 2 · `steps`, of a chain
-/// of 9 coupled nodes that swings from one end.
+/// 9 coupled nodes in a row, of unlike masses, the first of them held.
+Body chain(const Damping& damping);
+
+/// log2 of how much smaller the error gets when the step is halved, from `steps` to 2 · `steps`, of that
+/// chain as it swings.
 double order(Integrator integrator, const Damping& damping, int steps);
 
 /// The longest stable step of a lattice whose nodes are slightly shaken, s.

@@ -4,6 +4,7 @@
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/program.h"
 #include "palpate/gl/texture.h"
+#include "tests/gl/with_context.h"
 
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
@@ -31,21 +32,7 @@ uniform float factor;
 void main() { numbers[gl_GlobalInvocationID.x] *= factor; }
 )";
 
-class Gl : public ::testing::Test {
- protected:
-    void SetUp() override {
-        try {
-            context_.emplace();
-        } catch (const Error& error) {
-            GTEST_SKIP() << "OpenGL is not available: " << error.what();
-        }
-    }
-    void TearDown() override {
-        if (context_) EXPECT_EQ(context_->errors(), 0) << context_->first_error();
-    }
-
-    std::optional<Context> context_;
-};
+using Gl = WithContext;
 
 // What Error says of these shaders; empty if they are sound.
 std::string complaint(std::initializer_list<Shader> shaders) {

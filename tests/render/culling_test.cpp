@@ -4,6 +4,7 @@
 #include "palpate/gl/context.h"
 #include "palpate/mesh/clusters.h"
 #include "palpate/render/renderer.h"
+#include "tests/gl/with_context.h"
 #include "tests/render/gpu.h"
 
 #include <gtest/gtest.h>
@@ -55,19 +56,15 @@ TEST(Clustering, EachTriangleIsInOneClusterAndTurnsAsItDid) {
     EXPECT_TRUE(clusters(Mesh{}, 64, 124).ends.empty());
 }
 
-class CullingTest : public ::testing::Test {
+class CullingTest : public WithContext {
  protected:
     void SetUp() override {
-        try {
-            context_.emplace();
-        } catch (const Error& error) {
-            GTEST_SKIP() << "OpenGL is not available: " << error.what();
-        }
-        renderer_.emplace(Offscreen{200, 150}, &*context_);
+        WithContext::SetUp();
+        if (context_) renderer_.emplace(Offscreen{200, 150}, context());
     }
     void TearDown() override {
         renderer_.reset();
-        if (context_) EXPECT_EQ(context_->errors(), 0) << context_->first_error();
+        WithContext::TearDown();
     }
 
     Image image(const Picture& picture) {
@@ -107,8 +104,6 @@ class CullingTest : public ::testing::Test {
         }
         return most;
     }
-
-    std::optional<gl::Context> context_;
     std::optional<Renderer> renderer_;
     std::mt19937 random_{7};
 };

@@ -6,6 +6,7 @@
 #include "palpate/render/gpu_embedding.h"
 #include "palpate/render/reach.h"
 #include "palpate/render/renderer.h"
+#include "tests/gl/with_context.h"
 #include "tests/render/gpu.h"
 #include "tests/render/pictures.h"
 
@@ -88,19 +89,8 @@ void expect_same(const Moved& is, const Moved& should, float size, const std::st
     EXPECT_LE(largest(is.tangents, should.tangents), 2e-4f) << where;
 }
 
-class Mapped : public ::testing::Test {
+class Mapped : public WithContext {
  protected:
-    void SetUp() override {
-        try {
-            context_.emplace();
-        } catch (const Error& error) {
-            GTEST_SKIP() << "OpenGL is not available: " << error.what();
-        }
-    }
-    void TearDown() override {
-        if (context_) EXPECT_EQ(context_->errors(), 0) << context_->first_error();
-    }
-
     // By every mapping, from buffers and from textures.
     template <class Expect>
     void for_each_way(const Carrier& c, const std::vector<vec3>& nodes, const std::string& how,
@@ -135,8 +125,6 @@ class Mapped : public ::testing::Test {
                          expect_same(is, should, size, where);
                      });
     }
-
-    std::optional<gl::Context> context_;
 };
 
 TEST_F(Mapped, VerticesAreWhereTheHostPutsThem) {

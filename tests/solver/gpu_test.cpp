@@ -1,11 +1,11 @@
 // The backends of the GPU against the reference: the same physics, on whatever driver this machine has.
 #include "palpate/solver/gpu/gpu.h"
 
-#include "palpate/base/error.h"
+#include "bench/studies.h"
 #include "palpate/body/cloth.h"
-#include "palpate/gl/context.h"
 #include "palpate/solver/reference/reference.h"
 #include "palpate/solver/stability.h"
+#include "tests/gl/with_context.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
 #include "tests/solver/agreement.h"
@@ -20,22 +20,7 @@
 namespace palpate {
 namespace {
 
-class Gpu : public ::testing::Test {
- protected:
-    void SetUp() override {
-        try {
-            context_.emplace();
-        } catch (const Error& error) {
-            GTEST_SKIP() << "OpenGL is not available: " << error.what();
-        }
-    }
-    void TearDown() override {
-        if (context_) EXPECT_EQ(context_->errors(), 0) << context_->first_error();
-    }
-    const gl::Context* context() const { return &*context_; }
-
-    std::optional<gl::Context> context_;
-};
+using Gpu = WithContext;
 
 class EveryGpu : public Gpu, public ::testing::WithParamInterface<Backend> {};
 INSTANTIATE_TEST_SUITE_P(Backends, EveryGpu,
@@ -112,16 +97,7 @@ TEST_P(EveryWay, IsTheReferenceOnPolygonsAndFields) {
 // with steps so fine that they are the truth.
 TEST_P(EveryWay, HasItsOrder) {
     const double orders[] = {1, 1, 2, 2, 2, 4};
-    std::vector<vec3> places;
-    std::vector<float> masses;
-    std::vector<NetSpring> springs;
-    for (int i = 0; i < 9; ++i) {
-        places.push_back({0.1f * float(i), 0, 0});
-        masses.push_back(i == 0 ? 0 : 0.02f + 0.002f * float(i));
-        if (i > 0) springs.push_back({i - 1, i, 60, 0.095f});
-    }
-    Body chain = net(places, masses, springs);
-    chain.damping = 4;
+    const Body chain = studies::chain(studies::dampings[1]);
     const double seconds = 0.25;
     auto swung = [&](Solver& solver) {
         solver.step(seconds);
