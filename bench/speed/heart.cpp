@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 
 namespace palpate::speed {
 namespace {
@@ -25,6 +26,8 @@ constexpr int steps_a_frame = 15;
 constexpr double one_step = 1e-5;  // s
 constexpr Mapping mappings[] = {Mapping::constant, Mapping::interpolated, Mapping::trilinear, Mapping::frames,
                                 Mapping::one_to_one};
+
+const Material flesh{.youngs_modulus = 40'000, .density = 1060, .damping = 20};
 
 // A body and surfaces that hang on it.
 struct Subject {
@@ -50,9 +53,7 @@ Subject the_heart() {
         heart = {"an ellipsoid in place of the heart, which is not in PALPATE_DATA", {}, {}};
         for (int count : faces)
             heart.surfaces.push_back(ellipsoid(vec3(0.05f, 0.06f, 0.08f), rings_for(count)));
-        heart.body = lattice(
-            heart.surfaces[0],
-            {.nodes = 20'000, .material = {.youngs_modulus = 40'000, .density = 1060, .damping = 20}});
+        heart.body = lattice(heart.surfaces[0], {.nodes = 20'000, .material = flesh});
     }
     return heart;
 }
@@ -91,11 +92,20 @@ class Shown {
           solver_(std::move(solver)),
           skin_(embed(surface, body, mapping)),
           mesh_(on_card(*solver_) ? renderer.add(surface, skin_) : renderer.add(surface)),
-          team_(threads) {
-        const Bounds box = bounds_of(surface.positions);
-        picture_.camera.look_at = box.centre();
-        picture_.camera.eye = picture_.camera.look_at + vec3(0, 0, 2.5f * glm::length(box.size()));
+          team_(threads),
+          box_(bounds_of(surface.positions)) {
+        look(0, 2.5f);
     }
+
+    /// From so many times its size away, and so many beside its middle.
+    void look(float beside, float away) {
+        const float size = glm::length(box_.size());
+        picture_.camera.look_at = box_.centre() + vec3(beside * size, 0, 0);
+        picture_.camera.eye = picture_.camera.look_at + vec3(0, 0, away * size);
+    }
+
+    void cull(bool culls) { picture_.culls = culls; }
+    Culled culled() const { return renderer_.culled(mesh_); }
 
     void step() { solver_->step(steps_a_frame * one_step); }
 
@@ -118,6 +128,7 @@ class Shown {
     Embedding skin_;
     int mesh_;
     Team team_;
+    Bounds box_;
     std::vector<vec3> positions_, normals_;
     Picture picture_;
 };
@@ -151,15 +162,22 @@ const Machine::Mover* first(const Machine& machine, bool gpu) {
 const std::string step_table = "Milliseconds a simulation step (2005: 2.22)";
 const std::string frame_table =
     "Milliseconds a drawn frame, mapped by the CPU or by the GPU (2005: 5.26 constant, 6.67 interpolated)";
+const std::string culling_table =
+    "Milliseconds a drawn frame, mapped by the GPU, by what is left out before it is mapped";
 const std::string whole_table = "Frames a second with 15 steps a frame (2005: 25)";
 
 Timings run(int rounds) {
     const Machine machine;
     const Subject heart = the_heart(), dragon = the_dragon();
     std::vector<Case> cases;
-    for (const auto& mover : machine.movers)
-        cases.push_back(steps(Place{step_table, described(heart, heart.surfaces[0]), mover.name}.name(),
-                              heart.body, machine, mover, Integrator::verlet));
+    const Subject box{"a box of 27³", lattice(ivec3(27), 0.01f, flesh), {}};
+    for (const Subject* subject : {&heart, &box})
+        for (const auto& mover : machine.movers)
+            cases.push_back(
+                steps(Place{step_table, fmt::format("{} ({} nodes)", subject->about, subject->body.count()),
+                            mover.name}
+                          .name(),
+                      subject->body, machine, mover, Integrator::verlet));
     std::optional<Renderer> renderer;
     if (machine.gl()) renderer.emplace(Offscreen(), machine.gl());
     // Frames that stand still, and frames with steps.
@@ -186,6 +204,28 @@ Timings run(int rounds) {
         for (Mapping mapping : {Mapping::constant, Mapping::interpolated})
             add(frame_table, dragon, dragon.surfaces[0], mapping, *still, column, false);
     }
+    if (const Machine::Mover* still = first(machine, true); renderer && still)
+        for (const auto& [where, beside, away] : {std::tuple{"all of it in the picture", 0.0f, 2.5f},
+                                                  {"a third of it", 0.5f, 0.8f},
+                                                  {"none of it", 5.0f, 2.5f}}) {
+            std::shared_ptr<Solver> solver = make_solver(heart.body, with(*still), machine.gl());
+            auto shown =
+                std::make_shared<Shown>(*renderer, heart.surfaces[1], heart.body, Mapping::frames, solver, 1);
+            shown->look(beside, away);
+            shown->draw();
+            const Culled of = shown->culled();
+            const std::string row =
+                fmt::format("{}, {}: {} of {} vertices mapped", described(heart, heart.surfaces[1]), where,
+                            of.vertices_drawn, of.vertices);
+            for (bool culls : {false, true})
+                cases.push_back(repeating(
+                    Place{culling_table, row, culls ? "culled" : "all drawn"}.name(),
+                    [=] {
+                        shown->cull(culls);
+                        shown->draw();
+                    },
+                    machine.gl()));
+        }
     for (const auto& mover : machine.movers)
         for (Mapping mapping : {Mapping::constant, Mapping::interpolated})
             if (renderer) add(whole_table, heart, heart.surfaces[0], mapping, mover, mover.name, true);
@@ -199,9 +239,14 @@ void note(std::vector<std::string>& list, const std::string& name) {
     if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
 }
 
+// The CPU, or a picture without culling.
+bool is_compared_with(const std::string& column) {
+    return column.starts_with("cpu") || column == "reference" || column == "all drawn";
+}
+
 std::string text(const Timings& timings) {
     std::string text = timings.driver + "\n\nBest, and in brackets median. 2005 was a GeForce 6800 Ultra.\n";
-    for (const std::string& table : {step_table, frame_table, whole_table}) {
+    for (const std::string& table : {step_table, frame_table, culling_table, whole_table}) {
         std::vector<std::string> rows, columns;
         for (const Case& of : timings.cases)
             if (const Place place = place_of(of.name); place.table == table) {
@@ -211,23 +256,23 @@ std::string text(const Timings& timings) {
         if (rows.empty()) continue;
         std::vector<std::string> cells{""};
         cells.insert(cells.end(), columns.begin(), columns.end());
-        cells.emplace_back("GPU over CPU");
+        cells.emplace_back(table == culling_table ? "times as fast" : "GPU over CPU");
         text += "\n" + table + ":\n\n" + head(cells);
         for (const std::string& which : rows) {
             cells = {which};
-            double cpu = 0, gpu = 0;  // the fastest
+            double slower = 0, faster = 0;  // the best of what is held against each other
             for (const std::string& column : columns) {
                 const std::string name = Place{table, which, column}.name();
                 const Rate* rate = timings.find(name);
                 if (rate) {
-                    double& fastest = column.starts_with("cpu") || column == "reference" ? cpu : gpu;
-                    fastest = std::max(fastest, rate->best);
+                    double& side = is_compared_with(column) ? slower : faster;
+                    side = std::max(side, rate->best);
                 }
                 cells.push_back(rate && table == whole_table
                                     ? fmt::format("{:.1f} ({:.1f})", rate->best, rate->median)
                                     : milliseconds(timings, name));
             }
-            cells.push_back(cpu > 0 && gpu > 0 ? fmt::format("{:.2f}", gpu / cpu) : "–");
+            cells.push_back(slower > 0 && faster > 0 ? fmt::format("{:.2f}", faster / slower) : "–");
             text += row(cells);
         }
     }

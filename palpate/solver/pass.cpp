@@ -68,7 +68,7 @@ Pass make_pass(const Body& body, const Simulation& simulation) {
         assert(stencil->links.size() <= std::size(pass.spring));
         for (int l = 0; l < pass.links; ++l) {
             const Link& link = stencil->links[l];
-            pass.spring[l] = {0, link.stiffness, link.stiffness * link.rest, torn_at(link.rest, body)};
+            pass.spring[l] = {link.stiffness, link.stiffness * link.rest, torn_at(link.rest, body), 0};
         }
     } else {
         pass.links = std::get<Table>(body.springs).width;

@@ -3,10 +3,10 @@
 
 // A link of a grid's stencil; what a node's own table says is not here.
 struct Spring {
-    int   offset;      // to the neighbour, in nodes, where a backend lays its nodes out as a grid
     float stiffness;   // N/m
     float tension;     // stiffness x rest length, N
     float longest;     // ten times its rest length, squared, m^2: beyond, the motion has blown up
+    float padding;
 };
 
 const int half_space = 0, round_box = 1, polygon = 2, field = 3;  // kinds of obstacles

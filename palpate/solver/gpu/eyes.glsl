@@ -38,7 +38,7 @@ float longest(int l) {
 }
 float neighbour(int l) { return other(l) != id ? 1.0 : 0.0; }
 #else
-int other(int l) { return id + pass.spring[l].offset; }
+int other(int l) { return id + link_offset[l]; }
 #ifdef QUARTERS
 float share(int l) { return 0.25 * float((l < 10 ? trait.x >> 3 * l : trait.y >> 3 * (l - 10)) & 7u); }
 #else
@@ -49,9 +49,9 @@ float strength(int l) { return 0.5 * (texelFetch(ties, id).x + texelFetch(ties, 
 #else
 float strength(int l) { return 1; }
 #endif
-float stiffness(int l) { return strength(l) * pass.spring[l].stiffness; }
-float tension(int l) { return strength(l) * pass.spring[l].tension; }
-float longest(int l) { return pass.spring[l].longest; }
+float stiffness(int l) { return strength(l) * link_stiffness[l]; }
+float tension(int l) { return strength(l) * link_tension[l]; }
+float longest(int l) { return link_longest[l]; }
 float neighbour(int l) { return share(l) > 0 ? 1.0 : 0.0; }
 #endif
 

@@ -68,7 +68,7 @@ class Gpu final : public Solver {
           tiled_(simulation.backend == Backend::compute && tiles.value_or(!context_.software())),
           alone_(make_pipeline(simulation.backend, text(false, tiled_))),
           closing_(compute_program(text(false, false), "closing.comp", closing_comp)),
-          quiet_(quiet_pass()),
+          quiet_(make_pass(body_, simulation_)),
           shown_positions_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           shown_normals_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           adders_(std::clamp(groups(int(placement_.rim.size())) * group, group, most_adders)),
@@ -255,14 +255,6 @@ class Gpu final : public Solver {
         return states_[scheme_.stages.size() == 1 ? between : further]->positions;
     }
 
-    // Nothing touches or moves it.
-    Pass quiet_pass() const {
-        Pass pass = make_pass(body_, simulation_);
-        for (std::size_t l = 0; l < placement_.offsets.size(); ++l)
-            pass.spring[l].offset = placement_.offsets[l];
-        return pass;
-    }
-
     void add_impulses(const Touched& tools, double seconds) const {
         tools.impulses.use();
         tools.impulses.set("seconds", float(seconds));
@@ -384,7 +376,7 @@ class Gpu final : public Solver {
     std::unique_ptr<Pipeline> alone_;  // with no tools
     gl::Program closing_;
     std::optional<Touched> touched_;
-    const Pass quiet_;
+    const Pass quiet_;                 // nothing touches or moves it
     std::optional<Moving> states_[4];  // Where
     std::optional<Moving> next_sum_;
     std::vector<Past> pasts_;                     // the newest first

@@ -110,6 +110,23 @@ std::size_t count_guides(const Body& body) {
         std::count_if(body.inverse_mass.begin(), body.inverse_mass.end(), [](float m) { return !(m > 0); }));
 }
 
+// A stencil's links as constants, which a compiler folds into the loops over them: in a uniform block they
+// cost a cloth as much again.
+std::string links_of(const Pass& pass, const Placement& placement) {
+    const auto links = std::size_t(pass.links);
+    auto constant = [&](const char* type, const char* name, auto value) {
+        std::string list;
+        for (std::size_t l = 0; l < links; ++l) list += fmt::format("{}{}", l > 0 ? ", " : "", value(l));
+        return fmt::format("const {0} {1}[LINKS] = {0}[LINKS]({2});\n", type, name, list);
+    };
+    auto number = [](float value) { return fmt::format("{:.9e}", value); };
+    return constant("int", "link_offset", [&](std::size_t l) { return placement.offsets[l]; }) +
+           constant("float", "link_stiffness",
+                    [&](std::size_t l) { return number(pass.spring[l].stiffness); }) +
+           constant("float", "link_tension", [&](std::size_t l) { return number(pass.spring[l].tension); }) +
+           constant("float", "link_longest", [&](std::size_t l) { return number(pass.spring[l].longest); });
+}
+
 }  // namespace
 
 Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
@@ -120,7 +137,8 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
         if (holds) text += "#define " + what + "\n";
     };
     const auto* stencil = placement.grid ? &body.stencil() : nullptr;
-    define(true, fmt::format("LINKS {}", make_pass(body, simulation).links));
+    const Pass pass = make_pass(body, simulation);
+    define(true, fmt::format("LINKS {}", pass.links));
     define(!stencil, "TABLE");
     define(stencil && stencil->in_quarters(), "QUARTERS");
     define(stencil && !stencil->strength.empty(), "STRENGTH");
@@ -136,6 +154,7 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     define(!touched, "DRAGS 0");
     define(width > 0, fmt::format("FLAT {}", width));
     Text made{{}, sums, placement.slots};
+    if (stencil) text += links_of(pass, placement);
     if (tiled && stencil) {
         const Tiles cut = tiles(body, placement);
         text += gpu::text(cut, body, placement);
