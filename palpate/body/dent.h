@@ -1,0 +1,31 @@
+#pragma once
+#include "palpate/base/vectors.h"
+
+#include <span>
+
+namespace palpate {
+
+/// A dent in a surface (Luciano, Banerjee and Rizzi 2007, section IV): each place on it moves against its
+/// normal by depth · exp(-d² / 2 width²), d being its distance from `centre`. Several add up. Distances are
+/// taken on the surface without any dents, wherever it is at the moment; that is where the contact point
+/// (Proxy) is too.
+struct Dent {
+    vec3 centre = vec3(0);  // m
+    float depth = 0;        // m; below 0 it is a bump
+    float width = 0.01f;    // m, the standard deviation
+};
+
+/// How many of them a surface can have in a picture.
+constexpr int most_dents = 64;
+
+/// How deep all of them are at a place of the undented surface, m.
+float depth_at(std::span<const Dent> dents, vec3 place);
+
+/// Where that place is then; `normal` is the surface's own, unit.
+vec3 dented(std::span<const Dent> dents, vec3 place, vec3 normal);
+
+/// The dented surface's normal there, unit. Exact on a plane; where the surface itself is curved with a radius R, off
+/// by about depth / R of the turn (docs/results.md has the table).
+vec3 dented_normal(std::span<const Dent> dents, vec3 place, vec3 normal);
+
+}  // namespace palpate
