@@ -1,0 +1,104 @@
+#pragma once
+#include "palpate/base/vectors.h"
+#include "palpate/mesh/mesh.h"
+#include "palpate/mesh/tree.h"
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+/// A surface that a hand may meet, as it is at one moment.
+struct Touchable {
+    std::span<const vec3> positions;        // m
+    std::span<const uvec3> triangles;       // counter-clockwise as seen from outside
+    std::span<const vec3> velocities = {};  // m/s, one a vertex; none: it stands still
+    bool is_sheet = false;                  // it stops a hand on both sides; else only one that is outside
+};
+
+/// What a hand may touch around a place: the triangles there, where they are at a time and how they move on.
+/// Asking it allocates nothing, so that a haptic loop may.
+class Patch {
+ public:
+    struct Face {
+        std::array<dvec3, 3> corners;     // m, at the time asked for
+        std::array<dvec3, 3> velocities;  // m/s
+        int surface;                      // the number of its Touchable
+        int triangle;                     // and which of its triangles it is
+        bool is_sheet;
+    };
+
+    Patch() = default;  // nothing to touch, anywhere
+
+    /// All triangles of the surfaces that come within `radius` of `centre`. It is true at `time` (s, on the
+    /// clock of the loop that asks it); after that each vertex goes on at its velocity, but for no longer
+    /// than `longest_guess`.
+    explicit Patch(std::span<const Touchable> surfaces, vec3 centre = vec3(0),
+                   float radius = std::numeric_limits<float>::infinity(), double time = 0);
+
+    static constexpr double longest_guess = 0.05;  // s: three frames. Then whoever moves it must be stuck
+
+    /// Beyond this ball nothing is known.
+    dvec3 centre() const { return centre_; }
+    double radius() const { return radius_; }
+
+    bool moves() const { return fastest_ > 0; }
+    std::size_t size() const { return from_.size(); }
+
+    /// One of a surface's triangles at a time, if it is in the patch.
+    std::optional<Face> find(int surface, int triangle, double time) const;
+
+    /// Calls act(Face) for every triangle that comes within `reach` of a point at a time, and for some that
+    /// do not quite.
+    template <class Act>
+    void for_each_near(dvec3 point, double reach, double time, const Act& act) const {
+        const double age = age_at(time);
+        const float far =
+            float(reach + double(fastest_) * age) + 1e-6f;  // and the rounding of the point to floats
+        for_each_within(vec3(point), far * far, [&](Index face) { act(face_at(face, age)); });
+    }
+
+ private:
+    struct From {
+        int surface, triangle;
+        bool is_sheet;
+    };
+
+    double age_at(double time) const;
+    Face face_at(Index face, double age) const;
+
+    template <class Act>
+    void for_each_within(vec3 point, float squared, const Act& act) const {
+        if (!tree_) return;
+        std::array<Index, 64> waiting;  // a tree that is halved by its middles is never so deep
+        std::size_t count = 0;
+        waiting[count++] = 0;
+        while (count > 0) {
+            const Index here = waiting[--count];
+            const Tree::Node& node = tree_->nodes[here];
+            const vec3 off = glm::max(glm::max(node.low - point, point - node.high), vec3(0));
+            if (glm::dot(off, off) > squared) continue;
+            if (node.second == 0) {
+                for (Index i = node.first; i < node.first + node.count; ++i) act(tree_->faces[i]);
+                continue;
+            }
+            waiting[count++] = node.second;
+            waiting[count++] = here + 1;
+        }
+    }
+
+    dvec3 centre_ = dvec3(0);
+    double radius_ = std::numeric_limits<double>::infinity();
+    double time_ = 0;
+    float fastest_ = 0;  // m/s
+    std::unique_ptr<Mesh> mesh_;
+    std::unique_ptr<Tree> tree_;  // over that
+    std::vector<vec3> velocities_;
+    std::vector<From> from_;  // of each triangle of the mesh, in rising order
+};
+
+}  // namespace palpate

@@ -1,0 +1,37 @@
+#include "palpate/touch/force.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace palpate {
+
+dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel> feels,
+            std::span<const Dent> lasting) {
+    const auto contacts = proxy.contacts();
+    if (contacts.empty()) return dvec3(0);
+    dvec3 sunk(0);
+    const Contact* most = &contacts[0];
+    for (const Contact& contact : contacts) {
+        sunk += contact.depth * contact.normal;
+        if (contact.depth > most->depth) most = &contact;
+    }
+    const double depth = glm::length(sunk);
+    if (!(depth > 0)) return dvec3(0);
+    assert(std::size_t(most->surface) < feels.size());
+    const Feel& feel = feels[std::size_t(most->surface)];
+    const dvec3 normal = sunk / depth;
+
+    const double left = depth - double(depth_at(lasting, vec3(most->point)));
+    if (!(left > 0)) return dvec3(0);
+    const double going_out = glm::dot(velocity - most->velocity, normal);
+    const double push = std::max(feel.stiffness * left - feel.damping * going_out, 0.0);
+    const dvec3 turned(dented_normal(lasting, vec3(most->point), vec3(normal)));
+    const dvec3 pushed = push / std::max(glm::dot(turned, normal), 0.1) * turned;
+
+    dvec3 along = feel.stiffness * (proxy.position() - hand - sunk);
+    const double held = glm::length(along), most_held = feel.friction.still * push;
+    if (held > most_held) along *= most_held / held;
+    return pushed + along;
+}
+
+}  // namespace palpate

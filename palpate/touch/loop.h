@@ -1,0 +1,64 @@
+#pragma once
+#include "palpate/base/realtime.h"
+#include "palpate/touch/timing.h"
+#include "palpate/touch/touch.h"
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace palpate {
+
+struct LoopSettings {
+    double rate = 1000;    // Hz, from 250 to 4000; a device that paces has its own
+    double spin = 100e-6;  // s: the last part of each wait, during which it does not sleep
+};
+
+/// How a loop has kept time.
+struct LoopTiming {
+    Durations periods;                           // from tick to tick, s of the clock
+    Durations work;                              // of a tick, s of the processor's time on this thread
+    Durations proxy;                             // of the proxy alone, likewise; one for each hand
+    std::atomic<std::uint64_t> missed = 0;       // ticks that were left out because their time had gone by
+    std::atomic<std::uint64_t> longest_run = 0;  // of those, one after the other
+};
+
+/// Ticks hands on a thread of its own, a thousand times a second by absolute deadlines, with whatever
+/// priority the system grants; and on a second one a watchdog, which lets go of them if the first gets stuck.
+/// Both end with this object, and the hands' devices are stopped. The hands must outlive it.
+class TouchLoop {
+ public:
+    /// Throws Error if the rate is none.
+    explicit TouchLoop(std::vector<Touch*> hands, LoopSettings settings = {});
+    ~TouchLoop();
+    TouchLoop(const TouchLoop&) = delete;
+    TouchLoop& operator=(const TouchLoop&) = delete;
+
+    const LoopTiming& timing() const { return timing_; }
+
+    /// What the system granted to the thread.
+    Granted granted() const;
+
+    double rate() const { return settings_.rate; }
+
+    /// How often the watchdog had to act.
+    std::uint64_t times_stalled() const { return stalls_.load(std::memory_order_relaxed); }
+
+ private:
+    void run();
+    void watch();
+    void tick(double now);
+    void wait_for(double time) const;
+
+    const std::vector<Touch*> hands_;
+    const LoopSettings settings_;
+    bool paced_ = false;
+    LoopTiming timing_;
+    Granted granted_;
+    std::atomic<bool> started_ = false, ends_ = false;
+    std::atomic<std::uint64_t> stalls_ = 0;
+    std::thread loop_, watchdog_;
+};
+
+}  // namespace palpate

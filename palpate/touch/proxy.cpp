@@ -1,0 +1,294 @@
+#include "palpate/touch/proxy.h"
+
+#include "palpate/mesh/triangle.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double skin =
+    1e-7;  // m: so far the ball stays off what it touches, so that rounding never takes it in
+constexpr double still = 1e-10;            // m: less is no motion
+constexpr std::size_t most_touching = 12;  // with normals of their own
+constexpr int most_moves = 12;             // in one call; what is left of the way is for the next
+
+// The nearest point of a face, as seen from the ball's centre.
+struct Nearest {
+    dvec3 weights, point;
+    dvec3 normal;  // unit, towards the centre
+    double distance;
+};
+
+dvec3 front(const Patch::Face& face) {
+    return glm::cross(face.corners[1] - face.corners[0], face.corners[2] - face.corners[0]);
+}
+
+Nearest nearest(const Patch::Face& face, dvec3 centre) {
+    Nearest found;
+    found.weights = nearest_weights(centre, face.corners[0], face.corners[1], face.corners[2]);
+    found.point = found.weights.x * face.corners[0] + found.weights.y * face.corners[1] +
+                  found.weights.z * face.corners[2];
+    const dvec3 away = centre - found.point;
+    found.distance = glm::length(away);
+    const dvec3 outward = found.distance > 1e-12 ? away : front(face);
+    const double length = glm::length(outward);
+    found.normal = length > 0 ? outward / length : dvec3(0, 1, 0);
+    return found;
+}
+
+// Only a sheet stops what comes from behind. A solid's far side is behind too, and what has got into a solid
+// by mistake shall find its way out.
+bool stops(const Patch::Face& face, dvec3 centre) {
+    return face.is_sheet || glm::dot(centre - face.corners[0], front(face)) >= 0;
+}
+
+// How much of a way, up to `most`, the ball can go before it comes within `off` of a face. The distance to a
+// triangle, as to anything convex, is a convex function along a line; so Newton's steps never go beyond its
+// root.
+double free_part(const Patch::Face& face, dvec3 from, dvec3 way, double off, double most) {
+    const double hardly = 1e-12 * glm::length(way);
+    double part = 0;
+    for (int i = 0; i < 40; ++i) {
+        const Nearest there = nearest(face, from + part * way);
+        const double closing = -glm::dot(there.normal, way), gap = there.distance - off;
+        if (closing <= hardly) return most;
+        if (gap <= 0.01 * skin) return part;
+        part += gap / closing;
+        if (part >= most) return most;
+    }
+    return part;
+}
+
+// ---- what is touched ----
+
+struct Touching {
+    std::array<Contact, most_touching> list;
+    std::size_t count = 0;
+
+    void add(const Contact& contact) {
+        for (std::size_t i = 0; i < count; ++i)
+            if (glm::dot(list[i].normal, contact.normal) > 1 - 1e-12) return;
+        if (count < list.size()) list[count++] = contact;
+    }
+};
+
+Touching touching(const Patch& patch, double time, dvec3 centre, double radius) {
+    const double reach = radius + 2 * skin;
+    Touching found;
+    patch.for_each_near(centre, reach, time, [&](const Patch::Face& face) {
+        if (!stops(face, centre)) return;
+        const Nearest at = nearest(face, centre);
+        if (at.distance > reach) return;
+        const dvec3 velocity = at.weights.x * face.velocities[0] + at.weights.y * face.velocities[1] +
+                               at.weights.z * face.velocities[2];
+        found.add({at.point, at.normal, velocity, face.surface, face.triangle, at.weights, 0});
+    });
+    return found;
+}
+
+// ---- the way that planes leave ----
+
+// Of all ways that lead into none of the planes the nearest to the one that is wanted: that plus the normals
+// of at most three planes, each times its depth.
+struct Given {
+    dvec3 way;
+    std::array<std::size_t, 3> planes = {};
+    std::array<double, 3> depths = {};
+    std::size_t count = 0;
+};
+
+// With some planes to slide along; false if that is not the answer.
+bool try_planes(dvec3 wanted, const Touching& all, Given& given) {
+    auto normal = [&](std::size_t i) { return all.list[given.planes[i]].normal; };
+    const double tiny = 1e-9 * glm::length(wanted);
+    given.way = wanted;
+    if (given.count == 1) {
+        given.depths[0] = -glm::dot(normal(0), wanted);
+    } else if (given.count > 1) {
+        // Solve for depths: the way shall lie in all of them. A missing third plane is at right angles to the
+        // others.
+        const dvec3 a = normal(0), b = normal(1), c = given.count > 2 ? normal(2) : glm::cross(a, b);
+        const double volume = glm::dot(glm::cross(a, b), c);
+        if (!(std::abs(volume) > 1e-9)) return false;
+        // wanted = -sum depth · normal + rest along c; by the reciprocal vectors.
+        const dvec3 depths = -dvec3(glm::dot(wanted, glm::cross(b, c)), glm::dot(wanted, glm::cross(c, a)),
+                                    glm::dot(wanted, glm::cross(a, b))) /
+                             volume;
+        for (std::size_t i = 0; i < given.count; ++i) given.depths[i] = depths[int(i)];
+    }
+    for (std::size_t i = 0; i < given.count; ++i) {
+        if (given.depths[i] < -tiny) return false;
+        given.way += given.depths[i] * normal(i);
+    }
+    for (std::size_t i = 0; i < all.count; ++i)
+        if (glm::dot(all.list[i].normal, given.way) < -tiny) return false;
+    return true;
+}
+
+Given give_way(dvec3 wanted, const Touching& all) {
+    Given given{wanted};
+    if (try_planes(wanted, all, given)) return given;
+    const std::size_t n = all.count;
+    given.count = 1;
+    for (std::size_t i = 0; i < n; ++i) {
+        given.planes = {i};
+        if (try_planes(wanted, all, given)) return given;
+    }
+    given.count = 2;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j) {
+            given.planes = {i, j};
+            if (try_planes(wanted, all, given)) return given;
+        }
+    given.count = 3;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j)
+            for (std::size_t k = j + 1; k < n; ++k) {
+                given.planes = {i, j, k};
+                if (try_planes(wanted, all, given)) return given;
+            }
+    // Planes so nearly alike that rounding decides: it stays, against the one that is most in the way.
+    given = {dvec3(0), {}, {}, 1};
+    for (std::size_t i = 0; i < n; ++i)
+        if (const double depth = -glm::dot(all.list[i].normal, wanted); depth > given.depths[0]) {
+            given.planes[0] = i;
+            given.depths[0] = depth;
+        }
+    return given;
+}
+
+// How much of a way lies within a ball; none if it begins outside.
+double part_within(dvec3 from, dvec3 way, dvec3 centre, double radius) {
+    if (std::isinf(radius)) return 1;
+    const dvec3 off = from - centre;
+    const double a = glm::dot(way, way), b = glm::dot(off, way), c = glm::dot(off, off) - radius * radius;
+    if (!(c < 0) || !(radius > 0)) return 0;
+    return a > 0 ? std::min(1.0, (std::sqrt(b * b - a * c) - b) / a) : 1;
+}
+
+}  // namespace
+
+void Proxy::put(dvec3 place) {
+    place_ = place;
+    slips_ = true;
+    count_ = 0;
+}
+
+void Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction) {
+    const bool touched = count_ > 0;
+    if (touched) {
+        move_with_surface(patch, time);
+        go_back_down(patch, time);
+    }
+    leave_what_came_over_it(patch, time);
+    time_ = time;
+
+    dvec3 goal = hand;
+    const dvec3 along = given_way(patch, time, hand);
+    if (touched && count_ > 0) {
+        // A spring along the surface, no stronger than friction allows, holds it back.
+        dvec3 sunk(0);
+        const Contact* most = &contacts_[0];
+        for (const Contact& contact : contacts()) {
+            sunk += contact.depth * contact.normal;
+            if (contact.depth > most->depth) most = &contact;
+        }
+        assert(std::size_t(most->surface) < friction.size());
+        const Friction& rough = friction[std::size_t(most->surface)];
+        const double way = glm::length(along);
+        const bool slips = way > (slips_ ? rough.sliding : rough.still) * glm::length(sunk);
+        slips_ = slips;
+        if (!slips) return;
+        const double held = std::min(rough.sliding * glm::length(sunk), way);
+        goal -= held / way * along;
+    } else {
+        slips_ = true;
+    }
+    approach(patch, time, goal);
+    given_way(patch, time, hand);
+}
+
+// Where the surface carries what it is touched at. A triangle that is no longer in the patch has gone on
+// evenly.
+void Proxy::move_with_surface(const Patch& patch, double time) {
+    const Contact& held =
+        *std::max_element(contacts_.begin(), contacts_.begin() + std::ptrdiff_t(count_),
+                          [](const Contact& a, const Contact& b) { return a.depth < b.depth; });
+    if (const auto face = patch.find(held.surface, held.triangle, time)) {
+        const dvec3 now = held.weights.x * face->corners[0] + held.weights.y * face->corners[1] +
+                          held.weights.z * face->corners[2];
+        place_ += now - held.point;
+    } else {
+        place_ += std::clamp(time - time_, 0.0, Patch::longest_guess) * held.velocity;
+    }
+}
+
+// A surface that has sunk away under it has not let go of it.
+void Proxy::go_back_down(const Patch& patch, double time) {
+    if (touching(patch, time, place_, radius_).count > 0) return;
+    dvec3 sunk(0);
+    for (const Contact& contact : contacts()) sunk += contact.depth * contact.normal;
+    go(patch, time, -sunk);
+}
+
+void Proxy::leave_what_came_over_it(const Patch& patch, double time) {
+    for (int i = 0; i < most_moves; ++i) {
+        double least = radius_;
+        dvec3 out(0);
+        patch.for_each_near(place_, radius_, time, [&](const Patch::Face& face) {
+            if (!stops(face, place_)) return;
+            const Nearest at = nearest(face, place_);
+            if (at.distance >= least) return;
+            least = at.distance;
+            out = at.normal;
+        });
+        if (least >= radius_) return;
+        place_ += (radius_ + skin - least) * out;
+    }
+}
+
+// The way towards a goal that the surfaces leave, from where it is; and what they are.
+dvec3 Proxy::given_way(const Patch& patch, double time, dvec3 goal) {
+    const Touching all = touching(patch, time, place_, radius_);
+    const Given given = give_way(goal - place_, all);
+    count_ = 0;
+    for (std::size_t i = 0; i < given.count; ++i) {
+        if (!(given.depths[i] > 0)) continue;
+        contacts_[count_] = all.list[given.planes[i]];
+        contacts_[count_++].depth = given.depths[i];
+    }
+    return given.way;
+}
+
+void Proxy::approach(const Patch& patch, double time, dvec3 goal) {
+    for (int i = 0; i < most_moves; ++i) {
+        const dvec3 way = given_way(patch, time, goal);
+        if (!(glm::length(way) > still)) return;
+        go(patch, time, way);
+    }
+}
+
+// Along a way, up to the first thing on it. A long one in pieces, beside which there is little to look at.
+void Proxy::go(const Patch& patch, double time, dvec3 way) {
+    way *= part_within(place_, way, patch.centre(), patch.radius() - radius_ - skin);
+    const double length = glm::length(way);
+    if (!(length > 0)) return;
+    const double longest = std::max(radius_, 0.001), off = radius_ + skin;
+    const int pieces = int(std::ceil(length / longest));
+    way /= pieces;
+    for (int i = 0; i < pieces; ++i) {
+        double part = 1;
+        patch.for_each_near(place_ + 0.5 * way, 0.5 * glm::length(way) + off, time,
+                            [&](const Patch::Face& face) {
+                                if (stops(face, place_))
+                                    part = std::min(part, free_part(face, place_, way, off, part));
+                            });
+        place_ += part * way;
+        if (part < 1) return;
+    }
+}
+
+}  // namespace palpate

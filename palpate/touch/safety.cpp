@@ -1,0 +1,114 @@
+#include "palpate/touch/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+bool is_finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool is_sound(dvec3 wanted, const Hand& hand) {
+    return is_finite(wanted) && is_finite(dvec3(hand.position)) && std::isfinite(hand.time);
+}
+
+dvec3 no_longer_than(double most, dvec3 v) {
+    const double length = glm::length(v);
+    return length > most ? most / length * v : v;
+}
+
+}  // namespace
+
+Safety::Safety(const DeviceSpec& device, const SafetySettings& settings)
+    : settings_(settings),
+      peak_(settings.peak_force > 0 ? std::min(settings.peak_force, double(device.peak_force))
+                                    : double(device.peak_force)),
+      lasting_(std::min(
+          peak_, settings.lasting_force > 0 ? settings.lasting_force : double(device.lasting_force))) {}
+
+dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surface, double now) {
+    const double seconds = std::clamp(now - time_, 0.0, 0.01);
+    time_ = now;
+    double fresh = 0;
+    if (!is_finite(velocity)) velocity = dvec3(0);
+    if (!is_finite(surface)) surface = dvec3(0);
+    if (is_sound(wanted, hand)) {
+        watch(hand, surface);
+        fresh = std::clamp(1 - (now - hand.time - settings_.fresh) / settings_.fade, 0.0, 1.0);
+        if (!(fresh > 0)) let_go(Held::stale);
+    } else {
+        let_go(Held::not_finite);
+        wanted = dvec3(0);
+    }
+    gain_ = fresh > 0 ? grown(glm::length(wanted), now) : 0;
+    dvec3 force = passive(gain_ * fresh * wanted, velocity - surface, seconds);
+    force = no_longer_than(budget(glm::length(force), seconds), force);
+    force = force_ + no_longer_than(peak_ / settings_.fall * seconds, force - force_);
+    force_ = no_longer_than(peak_, force);
+    return force_;
+}
+
+void Safety::let_go(Held why) {
+    reason_ = why;
+    waits_ = true;
+    gain_ = 0;
+    absorbed_ = 0;
+}
+
+Held Safety::held() const {
+    if (waits_) return reason_;
+    return gain_ < 1 ? Held::ramping : Held::no;
+}
+
+// Whether the hand went where it is, as hands go; and what the force that was written did on its way.
+void Safety::watch(const Hand& hand, dvec3 surface) {
+    if (knows_hand_) {
+        const double seconds = std::max(hand.time - before_.time, 0.0);
+        const dvec3 went = dvec3(hand.position) - dvec3(before_.position);
+        const double way = glm::length(went);
+        absorbed_ -= glm::dot(force_, went - seconds * surface);
+        if (hand.placed != before_.placed)
+            let_go(Held::placed);
+        else if (way > settings_.jump && way > settings_.fastest_hand * seconds)
+            let_go(Held::jumped);
+    }
+    before_ = hand;
+    knows_hand_ = true;
+}
+
+// From nothing, once little is wanted, to all.
+double Safety::grown(double wanted, double now) {
+    if (waits_) {
+        if (wanted > settings_.small_force) return 0;
+        waits_ = false;
+        begun_ = now;
+    }
+    return settings_.ramp > 0 ? std::clamp((now - begun_) / settings_.ramp, 0.0, 1.0) : 1;
+}
+
+// A surface that is sampled gives out a little energy at each turn of the hand, as no real one does; on a
+// stiff one it adds up to a buzz. What has been given out beyond what was put in is taken back by a damper
+// (Hannaford and Ryu 2002). It counts from when the touch began.
+dvec3 Safety::passive(dvec3 force, dvec3 velocity, double seconds) {
+    if (glm::dot(force, force) == 0) {
+        absorbed_ = 0;
+        return force;
+    }
+    const double square = glm::dot(velocity, velocity);
+    if (absorbed_ >= 0 || !(square > 1e-8) || !(seconds > 0)) return force;
+    const double damping = std::min(-absorbed_ / (square * seconds), settings_.most_damping);
+    return force - damping * velocity;
+}
+
+// A motor's heat goes with the square of its force: the mean of that is held to what it can stand.
+double Safety::budget(double force, double seconds) {
+    const double weight = settings_.warm_up > 0 ? 1 - std::exp(-seconds / settings_.warm_up) : 1;
+    const double bounded = std::min(force, peak_);
+    heat_ += (bounded * bounded - heat_) * weight;
+    const double full = lasting_ * lasting_;
+    // From four fifths of that on the peak comes down, so that force does not break off.
+    const double over = std::clamp((heat_ / full - 0.8) / 0.2, 0.0, 1.0);
+    return peak_ + over * (lasting_ - peak_);
+}
+
+}  // namespace palpate

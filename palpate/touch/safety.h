@@ -1,0 +1,91 @@
+#pragma once
+#include "palpate/base/names.h"
+#include "palpate/base/vectors.h"
+#include "palpate/touch/device.h"
+
+namespace palpate {
+
+/// Limits on what a hand may be pushed with.
+struct SafetySettings {
+    double peak_force = 0;     // N; 0: the device's
+    double lasting_force = 0;  // N, for longer than about `warm_up`; 0: the device's
+    double warm_up = 10;       // s
+    double fall = 0.008;       // s, in which the peak force may come or go: the fastest change
+    double small_force = 0.1;  // N: only when no more is wanted does force begin, and then
+    double ramp = 1;           // s, grows to what it shall be
+    double fresh = 0.003;      // s: a sample of the hand that is older lets go,
+    double fade = 0.020;       // s, in so long
+    double fastest_hand = 10;  // m/s, and
+    double jump = 0.01;        // m: a hand that is farther on than that was not moved by a person
+    double most_damping = 5;   // N·s/m, that the passivity observer may add
+};
+
+/// Why there is no force, or not all of it.
+enum class Held {
+    no,          // all that is wanted, within the limits
+    waiting,     // for a small force to begin with
+    ramping,     // it grows
+    placed,      // the device, a clutch or a scale was set anew
+    jumped,      // the hand was somewhere else at once
+    not_finite,  // a position or a force was not a number
+    stale,       // the samples are old
+    gone,        // the device does not answer
+    stalled,     // the loop did not come round, and the watchdog let go
+};
+
+inline std::span<const Named<Held>> names(Held) {
+    static constexpr Named<Held> all[] = {{Held::no, "no"},
+                                          {Held::waiting, "waiting for a small force"},
+                                          {Held::ramping, "ramping up"},
+                                          {Held::placed, "set anew"},
+                                          {Held::jumped, "the hand jumped"},
+                                          {Held::not_finite, "not a number"},
+                                          {Held::stale, "old samples"},
+                                          {Held::gone, "no device"},
+                                          {Held::stalled, "the loop stalled"}};
+    return all;
+}
+
+/// Stands between what a hand would feel and the device: the last word, which nothing passes that could hurt.
+/// Starts with no force. Works on the time that it is given, so it behaves the same on any clock.
+class Safety {
+ public:
+    Safety(const DeviceSpec& device, const SafetySettings& settings);
+
+    /// What may be written now of a wanted force, N. `hand`: the newest sample; `velocity`: of the hand, m/s;
+    /// `surface`: of what it touches.
+    dvec3 allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surface, double now);
+
+    /// No force at once, as after the device was stopped.
+    dvec3 none() { return force_ = dvec3(0); }
+
+    /// No force until a small one is wanted, and then a new ramp.
+    void let_go(Held why);
+
+    /// Why there is no force or not all, now; and why it was let go of the last time.
+    Held held() const;
+    Held last_reason() const { return reason_; }
+
+    double peak_force() const { return peak_; }
+
+ private:
+    void watch(const Hand& hand, dvec3 surface);
+    double grown(double wanted, double now);
+    dvec3 passive(dvec3 force, dvec3 velocity, double seconds);
+    double budget(double force, double seconds);
+
+    const SafetySettings settings_;
+    const double peak_, lasting_;
+    Held reason_ = Held::waiting;
+    bool waits_ = true;
+    double begun_ = 0;  // s, when the ramp began
+    double gain_ = 0;
+    double heat_ = 0;      // N², the mean square of the force
+    double absorbed_ = 0;  // J, from the hand since the touch began; below 0 it was given out
+    double time_ = 0;
+    Hand before_ = {};
+    bool knows_hand_ = false;
+    dvec3 force_ = dvec3(0);
+};
+
+}  // namespace palpate

@@ -1,0 +1,117 @@
+#pragma once
+#include "palpate/base/exchange.h"
+#include "palpate/base/shared.h"
+#include "palpate/body/dent.h"
+#include "palpate/body/patch.h"
+#include "palpate/touch/device.h"
+#include "palpate/touch/force.h"
+#include "palpate/touch/proxy.h"
+#include "palpate/touch/safety.h"
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+namespace palpate {
+
+struct TouchSettings {
+    double radius = 0.003;  // m, of the tip
+    std::vector<Feel> feels = {
+        {}};  // one for each surface that it meets, in the order of the patches' Touchables
+    SafetySettings safety = {};
+    double velocity_filter =
+        0.002;  // s: a hand's speed is its way over so long, because places come in steps
+    double direction_filter = 0.003;  // s: so long a force takes to turn when the tip goes over an edge
+    double lost = 0.008;              // s without a tick, after which the watchdog lets go
+};
+
+/// What a touch was like at its last tick.
+struct Felt {
+    double time = 0;                   // s
+    vec3 hand = vec3(0);               // m
+    vec3 velocity = vec3(0);           // m/s, of the hand
+    vec3 proxy = vec3(0);              // m
+    vec3 force = vec3(0);              // N, on the hand
+    Held held = Held::waiting;         // whether that is all,
+    Held last_reason = Held::waiting;  // and why it was let go of the last time
+    unsigned buttons = 0;
+    unsigned placed = 0;
+
+    // The dents that surfaces shall be drawn with: those that stay and those under the tip.
+    std::array<Dent, most_dents> dents = {};
+    std::array<int, most_dents> surfaces = {};  // whose they are
+    int count = 0;
+
+    std::vector<Dent> dents_of(int surface) const;
+};
+
+/// One hand: its device, its proxy, what it feels and leaves. tick() is all that happens in a thousandth of a
+/// second; a TouchLoop calls it on a thread of its own, tests and films on a clock of theirs. It allocates
+/// nothing, locks nothing and never throws. Everything else may be called from any one other thread
+/// meanwhile.
+class Touch {
+ public:
+    /// Opens the device. Throws Error.
+    Touch(std::unique_ptr<Device> device, TouchSettings settings);
+    ~Touch();  // no force is left
+
+    /// What the hand can meet from now on. Call it as often as surfaces move, or once if they do not.
+    void feel(Patch patch);
+
+    /// The newest.
+    Felt felt() const { return felt_.load(); }
+
+    void tick(double now) noexcept;
+
+    /// The watchdog's: stops the device if there has been no tick for too long. True if it did so now.
+    bool watch(double now) noexcept;
+
+    /// No more force, when nobody ticks any more.
+    void let_go() noexcept { device_->stop(); }
+
+    const TouchSettings& settings() const { return settings_; }
+    const DeviceSpec& device() const { return spec_; }
+    double proxy_seconds() const {
+        return proxy_seconds_;
+    }  // of the processor's time in the last tick; the loop's own
+
+    /// Whether tick() measures that, which takes a fraction of a microsecond.
+    bool times_proxy = false;
+
+ private:
+    void take_in(const Hand& hand);
+    dvec3 wanted(double now);
+    dvec3 turned_slowly(dvec3 wanted, double seconds);
+    void leave_marks(double now);
+    void tell(double now, dvec3 force);
+
+    // A dent that stays, where its surface carries it.
+    struct Mark {
+        Dent dent;
+        int triangle;
+        dvec3 weights;
+    };
+
+    std::unique_ptr<Device> device_;
+    const DeviceSpec spec_;
+    TouchSettings settings_;
+    std::vector<Friction> friction_;
+    Proxy proxy_;
+    Safety safety_;
+    Latest<Patch> patches_;
+    Hand hand_ = {};
+    bool knows_hand_ = false;
+    dvec3 velocity_ = dvec3(0);
+    dvec3 direction_ = dvec3(0);
+    double time_ = 0;
+    double proxy_seconds_ = 0;
+    std::vector<std::vector<Mark>> marks_;    // by surface; their room is made beforehand
+    std::vector<std::vector<Dent>> lasting_;  // the marks' dents
+    Felt told_ = {};
+    Shared<Felt> felt_;
+    std::atomic<double> ticked_;  // s; below 0 before the first
+    std::atomic<bool> stopped_ = false;
+};
+
+}  // namespace palpate
