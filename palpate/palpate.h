@@ -13,6 +13,7 @@
 #include "palpate/body/body.h"
 #include "palpate/body/cloth.h"
 #include "palpate/body/collider.h"
+#include "palpate/body/dent.h"
 #include "palpate/body/embedding.h"
 #include "palpate/body/hull.h"
 #include "palpate/body/influences.h"

@@ -8,7 +8,7 @@ namespace palpate {
 /// A dent in a surface (Luciano, Banerjee and Rizzi 2007, section IV): each place on it moves against its
 /// normal by depth · exp(-d² / 2 width²), d being its distance from `centre`. Several add up. Distances are
 /// taken on the surface without any dents, wherever it is at the moment; that is where the contact point
-/// (Proxy) is too.
+/// (Proxy) is too. They are straight, so that a near but unconnected part of the surface is dented as well.
 struct Dent {
     vec3 centre = vec3(0);  // m
     float depth = 0;        // m; below 0 it is a bump
@@ -18,14 +18,21 @@ struct Dent {
 /// How many of them a surface can have in a picture.
 constexpr int most_dents = 64;
 
+/// Whether it moves anything. It does not if its depth is 0, or if any of it is no sane length: not finite,
+/// beyond 1e9 m, or a width under 1e-9 m.
+bool acts(const Dent& dent);
+
 /// How deep all of them are at a place of the undented surface, m.
 float depth_at(std::span<const Dent> dents, vec3 place);
 
 /// Where that place is then; `normal` is the surface's own, unit.
 vec3 dented(std::span<const Dent> dents, vec3 place, vec3 normal);
 
-/// The dented surface's normal there, unit. Exact on a plane; where the surface itself is curved with a radius R, off
-/// by about depth / R of the turn (docs/results.md has the table).
+/// The dented surface's normal there, unit. Exact on a plane; where the surface itself is curved with a
+/// radius R, off by about depth / R of the turn (docs/results.md has the table).
 vec3 dented_normal(std::span<const Dent> dents, vec3 place, vec3 normal);
+
+/// How far they move any place at most, m.
+float furthest(std::span<const Dent> dents);
 
 }  // namespace palpate

@@ -1,0 +1,53 @@
+#include "palpate/body/dent.h"
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using std::exp;
+
+#define FN
+#define select(c, a, b) ((c) ? (a) : (b))
+
+// The text, for dents of which those that do not act have no depth.
+struct Text {
+    using Real = float;
+    using Real3 = vec3;
+
+    std::span<const Dent> dents;
+    int dent_count = int(dents.size());
+    Dent dent(int i) const { return acts(dents[std::size_t(i)]) ? dents[std::size_t(i)] : Dent{}; }
+
+#include "palpate/body/dent.inl"
+};
+
+#undef FN
+#undef select
+
+bool sane(float length) { return std::abs(length) < 1e9f; }
+
+}  // namespace
+
+bool acts(const Dent& dent) {
+    return sane(dent.centre.x) && sane(dent.centre.y) && sane(dent.centre.z) && sane(dent.depth) &&
+           sane(dent.width) && dent.width >= 1e-9f && dent.depth != 0;
+}
+
+float depth_at(std::span<const Dent> dents, vec3 place) { return Text{dents}.depth_at(place); }
+
+vec3 dented(std::span<const Dent> dents, vec3 place, vec3 normal) {
+    return Text{dents}.dented(place, normal);
+}
+
+vec3 dented_normal(std::span<const Dent> dents, vec3 place, vec3 normal) {
+    return Text{dents}.dented_normal(place, normal);
+}
+
+float furthest(std::span<const Dent> dents) {
+    float sum = 0;
+    for (const Dent& dent : dents) sum += acts(dent) ? std::abs(dent.depth) : 0;
+    return sum;
+}
+
+}  // namespace palpate
