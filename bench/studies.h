@@ -5,7 +5,7 @@
 #include <vector>
 
 // Measurements of the physics against what theory says. The tests hold them to bounds; palpate-tables prints
-// them for docs/results.md. All run on the reference solver in double.
+// them for docs/results.md. All that move run on the reference solver in double.
 
 namespace palpate::studies {
 
@@ -52,6 +52,18 @@ struct Swing {
     double drift;  // of the mean, from the first tenth to the last
 };
 Swing energy_swing(Integrator integrator, int steps);
+
+/// How far normals are off those of finite differences of the surface that the same formulas displace,
+/// degrees: the most within three widths of the middle of one dent, 10 mm wide, on a sphere. By
+/// dented_normal(), and by section IV.B of 2007 as it is printed, with the sign of its exponent mended, with
+/// its axis made unit, and with both. That paper moves vertices outwards, so its normals are held to those of
+/// a bump. `width_over_radius`: 0 to 1, 0 being a plane; `depth_over_width` times it must stay under 1, where
+/// the surface would turn inside out.
+struct DentNormals {
+    double ours = 0;
+    double printed = 0, with_exponent = 0, with_axis = 0, with_both = 0;
+};
+DentNormals dent_normals(double width_over_radius, double depth_over_width);
 
 /// How well each mapping carries a surface, as Markdown on standard output (bench/embedding.cpp).
 void print_mappings();

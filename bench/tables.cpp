@@ -1,5 +1,6 @@
 // Prints the tables of docs/results.md that compare measurements with theory:
-//   palpate-tables [orders] [stability] [waves] [cantilever] [energy] [mappings]    all, if none is named
+//   palpate-tables [orders] [stability] [waves] [cantilever] [energy] [dents] [mappings]    all, if none is
+//   named
 #include "bench/studies.h"
 
 #include <fmt/format.h>
@@ -77,12 +78,26 @@ void energies() {
     }
 }
 
+void dents() {
+    fmt::print(
+        "| σ/R | depth/σ | dented_normal() | 2007 as printed | its exponent mended | its axis unit | both |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n");
+    for (double width : {0.0, 0.05, 0.1, 0.2, 0.5, 1.0})
+        for (double depth : {0.1, 0.3, 1.0, 2.0}) {
+            if (!(width * depth < 1)) continue;
+            const DentNormals off = dent_normals(width, depth);
+            fmt::print("| {} | {} | {:.2f}° | {:.1f}° | {:.1f}° | {:.1f}° | {:.2f}° |\n", width, depth,
+                       off.ours, off.printed, off.with_exponent, off.with_axis, off.with_both);
+        }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
     const std::vector<std::pair<std::string, void (*)()>> tables = {
-        {"orders", orders},         {"stability", stability}, {"waves", waves},
-        {"cantilever", cantilever}, {"energy", energies},     {"mappings", print_mappings}};
+        {"orders", orders},          {"stability", stability}, {"waves", waves},
+        {"cantilever", cantilever},  {"energy", energies},     {"dents", dents},
+        {"mappings", print_mappings}};
     const std::vector<std::string> wanted(arguments + 1, arguments + count);
     for (const std::string& name : wanted)
         if (std::none_of(tables.begin(), tables.end(), [&](const auto& t) { return t.first == name; })) {

@@ -13,11 +13,12 @@ struct Command {
 layout(std430, binding = 5) writeonly buffer Commands { Command commands[]; };
 
 uniform bool hides_backs;  // whether triangles that show their backs are not drawn
+uniform float moved;       // m; how far vertices may lie from where the embedding puts them
 
 // Beyond one of the sides of what is seen.
 bool outside(Box box) {
     vec3 rounding = 1e-5 * (box.high - box.low) + 1e-6 * max(abs(box.low), abs(box.high));
-    vec3 low = box.low - rounding, high = box.high + rounding;
+    vec3 low = box.low - rounding - moved, high = box.high + rounding + moved;
     vec3 most = vec3(-3e38), least = vec3(3e38);  // of x, y, z from the two planes of each axis, inwards
     for (int k = 0; k < 8; ++k) {
         vec4 p = to_clip * vec4(mix(low, high, vec3(k & 1, k >> 1 & 1, k >> 2 & 1)), 1);

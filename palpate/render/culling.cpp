@@ -208,7 +208,7 @@ Culling::Culling(const Clusters& clusters, const Mesh& mesh, const Embedding& em
     commands_ = gl::Buffer::room(sizes_.size() * sizeof(Command));
 }
 
-void Culling::find(const View& view, bool hides_backs, bool in_textures) const {
+void Culling::find(const View& view, bool hides_backs, bool in_textures, float moved) const {
     const gl::Program& program = in_textures ? from_textures_ : from_buffers_;
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, parts_.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, clusters_.name());
@@ -216,6 +216,7 @@ void Culling::find(const View& view, bool hides_backs, bool in_textures) const {
     program.set("to_clip", view.to_clip);
     program.set("eye", view.eye);
     program.set("hides_backs", hides_backs);
+    program.set("moved", moved);
     program.use();
     glDispatchCompute(GLuint(sizes_.size() + group - 1) / group, 1, 1);
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -22,8 +22,8 @@ class Culling {
 
     /// For the nodes that GpuEmbedding::bind has bound; `in_textures` says how. A compute shader, so a
     /// program must be put to use after it. `hides_backs`: whether triangles that show their backs are not
-    /// drawn.
-    void find(const View& view, bool hides_backs, bool in_textures) const;
+    /// drawn. `moved`: how far vertices may lie from where the embedding puts them, m.
+    void find(const View& view, bool hides_backs, bool in_textures, float moved) const;
 
     /// Draws what find() has found, from the vertex array that is bound, to which Clusters::triangles belong.
     void draw() const;

@@ -1,5 +1,4 @@
-#version 450 core
-// A corner of anything, for shadow maps.
+// A corner of anything, for shadow maps. If it has dents, their text stands before this one, with DENTS defined.
 
 uniform mat4 to_clip;
 
@@ -9,5 +8,8 @@ void main() {
     vec3 place, normal;
     vec4 tangent;
     map_vertex(place, normal, tangent);
+#ifdef DENTS
+    place = dented(place, normal);
+#endif
     gl_Position = to_clip * vec4(place, 1);
 }

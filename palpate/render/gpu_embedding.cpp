@@ -34,6 +34,9 @@ const char* on_triangles_glsl =
 const char* words_glsl =
 #include "embedded/words.glsl.h"
     ;
+const char* words_end_glsl =
+#include "embedded/words_end.glsl.h"
+    ;
 
 constexpr int frames_group = 64;  // as in frames.comp
 
@@ -136,7 +139,7 @@ void GpuEmbedding::attach_tangents(const std::vector<vec4>& tangents) {
 }
 
 std::string GpuEmbedding::shader(bool in_textures) const {
-    return nodes_shader(in_textures) + kind_ + mapping_glsl;
+    return nodes_shader(in_textures) + kind_ + mapping_glsl + words_end_glsl;
 }
 
 void GpuEmbedding::bind(const GpuNodes& nodes) const {

@@ -7,9 +7,3 @@ void map_vertex(out vec3 position, out vec3 normal, out vec4 tangent) {
     position = f.position;
     tangent = vec4(upright(expand(f, rest_tangent.x, rest_tangent.y, rest_tangent.z), normal), rest_tangent.w);
 }
-
-#undef FN
-#undef Real
-#undef Real3
-#undef select
-#undef x_of

@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/base/vectors.h"
+#include "palpate/body/dent.h"
 #include "palpate/body/nodes.h"
 #include "palpate/scene/camera.h"
 
@@ -15,6 +16,8 @@ struct Look {
     int colour_map = -1;  // a number from Renderer::add(image): colours to multiply `colour` with; -1: none
     int normal_map = -1;  // the same, of normals about the surface's own; -1: none
     bool shows_normals = false;  // its colour is where its vertices' normals point now (2005, figure 6)
+    bool coarse_dents = false;   // normals are turned by dents at its vertices and not in each pixel: faster,
+                                 // and rough where triangles are larger than dents (2007, section IV.B)
 };
 
 /// A mesh where it is now: where its vertices are, or if it was added with an embedding, where the nodes are
@@ -26,6 +29,9 @@ struct Surface {
     Look look = {};
     Nodes nodes = {};         // where there are no positions: on the host, to be sent to the GPU,
     GpuNodes gpu_nodes = {};  // or on the GPU already, in the renderer's context
+    /// Where it is dented; most_dents of those that act are shown. They do not count towards the extent of
+    /// the things in the picture, so that a bump far above all of them may be cut off.
+    std::span<const Dent> dents = {};
 };
 
 /// Thin lines, such as the springs of a lattice. What a surface hides of them shines through faintly.

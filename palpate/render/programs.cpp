@@ -1,5 +1,9 @@
 #include "palpate/render/programs.h"
 
+#include "palpate/render/gpu_dents.h"
+
+#include <string>
+
 namespace palpate {
 namespace {
 
@@ -17,9 +21,6 @@ const char* ground_vert =
     ;
 const char* light_frag =
 #include "embedded/light.frag.h"
-    ;
-const char* placed_glsl =
-#include "embedded/placed.glsl.h"
     ;
 const char* screen_vert =
 #include "embedded/screen.vert.h"
@@ -43,16 +44,34 @@ const char* wires_vert =
 #include "embedded/wires.vert.h"
     ;
 
+const std::string version = "#version 450 core\n";
+
+std::string before_vertices(Dented dented) {
+    if (dented == Dented::no) return version;
+    return version + (dented == Dented::at_vertices ? "#define TURNED_HERE\n" : "") +
+           GpuDents::shader(SurfacePrograms::dents_binding);
+}
+
+std::string before_fragments(Dented dented) {
+    if (dented != Dented::at_fragments) return version;
+    return version + GpuDents::shader(SurfacePrograms::dents_binding);
+}
+
 }  // namespace
 
-SurfacePrograms::SurfacePrograms(std::string_view map_vertex)
-    : shown({{GL_VERTEX_SHADER, "surface.vert", surface_vert},
+const char* const placed_glsl =
+#include "embedded/placed.glsl.h"
+    ;
+
+SurfacePrograms::SurfacePrograms(std::string_view map_vertex, Dented dented)
+    : shown({{GL_VERTEX_SHADER, "surface.vert", before_vertices(dented) + surface_vert},
              {GL_VERTEX_SHADER, "map_vertex()", map_vertex},
              {GL_VERTEX_SHADER, "sky.glsl", sky_glsl},
-             {GL_FRAGMENT_SHADER, "surface.frag", surface_frag},
+             {GL_FRAGMENT_SHADER, "surface.frag", before_fragments(dented) + surface_frag},
              {GL_FRAGMENT_SHADER, "light.frag", light_frag},
              {GL_FRAGMENT_SHADER, "tone.frag", tone_frag}}),
-      depth({{GL_VERTEX_SHADER, "depth.vert", depth_vert}, {GL_VERTEX_SHADER, "map_vertex()", map_vertex}}) {}
+      depth({{GL_VERTEX_SHADER, "depth.vert", before_vertices(dented) + depth_vert},
+             {GL_VERTEX_SHADER, "map_vertex()", map_vertex}}) {}
 
 Programs::Programs()
     : background({{GL_VERTEX_SHADER, "screen.vert", screen_vert},

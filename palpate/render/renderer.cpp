@@ -3,6 +3,7 @@
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
 #include "palpate/render/culling.h"
+#include "palpate/render/gpu_dents.h"
 #include "palpate/render/gpu_embedding.h"
 #include "palpate/render/lighting.h"
 #include "palpate/render/openness.h"
@@ -58,6 +59,7 @@ struct Moving {
     gl::Buffer positions;
     gl::Buffer normals;
     GpuNodes nodes = {};  // where it hangs on nodes: in these buffers, or whose they are
+    GpuDents dents;
 };
 
 // How surfaces are drawn, for a picture or for a shadow map.
@@ -194,7 +196,7 @@ struct Renderer::Parts {
     Openness openness;
 
     Programs programs;
-    std::map<std::string, SurfacePrograms> mapped;  // by the text that maps
+    std::map<std::pair<std::string, Dented>, SurfacePrograms> others;  // by the text that maps, and the dents
 
     gl::VertexArray surface_corners = corners_of_surfaces();
     gl::VertexArray no_corners;  // for shaders that make their own
@@ -215,7 +217,7 @@ struct Renderer::Parts {
     void upload(const Surface& surface, Moving& to) const;
     void cast_shadows(const Picture& picture, const Lighting& light);
     void draw_background() const;
-    const SurfacePrograms& programs_for(const Model& model, const Moving& shape);
+    const SurfacePrograms& programs_for(const Model& model, const Moving& shape, const Look& look);
     void draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass);
     void draw_balls(const std::vector<Ball>& balls, const Pass& pass) const;
     void bind(const Model& model, const Moving& shape) const;
@@ -284,6 +286,7 @@ void Renderer::Parts::upload(const std::vector<Surface>& surfaces) {
 void Renderer::Parts::upload(const Surface& surface, Moving& to) const {
     const Model& model = models.at(surface.mesh);
     to.nodes = {};
+    if (to.dents.count() > 0 || !surface.dents.empty()) to.dents.set(surface.dents);
     if (surface.positions.size() == model.vertices) {
         assert(surface.normals.size() == surface.positions.size());
         to.positions.upload(surface.positions);
@@ -322,19 +325,30 @@ void Renderer::Parts::draw_background() const {
     glDepthFunc(GL_LESS);
 }
 
-const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const Moving& shape) {
-    if (shape.nodes.positions == 0) return programs.placed;
-    const std::string text = "#version 450 core\n" + model.embedding->shader(shape.nodes.width > 0);
-    return mapped.try_emplace(text, text).first->second;
+const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const Moving& shape,
+                                                     const Look& look) {
+    const Dented dented = shape.dents.count() == 0 ? Dented::no
+                          : look.coarse_dents      ? Dented::at_vertices
+                                                   : Dented::at_fragments;
+    const bool placed = shape.nodes.positions == 0;
+    if (placed && dented == Dented::no) return programs.placed;
+    const std::string text =
+        placed ? placed_glsl : "#version 450 core\n" + model.embedding->shader(shape.nodes.width > 0);
+    return others.try_emplace({text, dented}, text, dented).first->second;
 }
 
 void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const Model& model = models[surfaces[i].mesh];
-        const gl::Program& program = pass.begin(programs_for(model, moving[i]));
+        const gl::Program& program = pass.begin(programs_for(model, moving[i], surfaces[i].look));
         bind(model, moving[i]);
+        const bool dented = moving[i].dents.count() > 0;
+        if (dented) moving[i].dents.bind(SurfacePrograms::dents_binding);
         const bool culls = pass.culls && moving[i].nodes.positions != 0;
-        if (culls) model.culling->find(pass.view, model.closed, moving[i].nodes.width > 0);
+        // A dent turns triangles as it likes, but takes them no further than that.
+        if (culls)
+            model.culling->find(pass.view, model.closed && !dented, moving[i].nodes.width > 0,
+                                furthest(surfaces[i].dents));
         program.use();
         program.set("centre", vec3(0));
         program.set("size", 1.0f);

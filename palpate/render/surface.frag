@@ -1,8 +1,11 @@
-#version 450 core
-// A surface or a ball.
+// A surface or a ball. If it has dents and their normals are turned here, their text stands before this one, with DENTS
+// defined.
 
 in vec3 place;
 in vec3 facing;
+#ifdef DENTS
+in vec3 undented;  // where the place would be without dents, with the normal `facing`
+#endif
 in vec4 along_u;  // the tangent, and whether v runs along the normal × it, 1, or against, -1
 in vec2 uv;
 in float sky;  // the share of it that the place sees
@@ -37,6 +40,9 @@ vec3 bumped(vec3 normal) {
 void main() {
     vec3 to_eye = normalize(eye.xyz - eye.w * place);
     vec3 smooth_normal = dot(facing, facing) > 0 ? normalize(facing) : gl_FrontFacing ? to_eye : -to_eye;
+#ifdef DENTS
+    smooth_normal = dented_normal(undented, smooth_normal);
+#endif
     vec3 normal = bumpy ? bumped(smooth_normal) : smooth_normal;
     if (!gl_FrontFacing) normal = -normal;
     vec3 own = coloured ? look * texture(colour_map, uv).rgb : look;

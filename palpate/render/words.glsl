@@ -1,4 +1,4 @@
-// The words of mapping.inl in GLSL.
+// The words of mapping.inl and dent.inl in GLSL.
 #define FN
 #define Real float
 #define Real3 vec3

@@ -1,0 +1,46 @@
+#include "palpate/render/gpu_dents.h"
+
+#include <array>
+
+namespace palpate {
+namespace {
+
+const char* dent_glsl =
+#include "embedded/dent.glsl.h"
+    ;
+const char* dent_inl =
+#include "embedded/dent.inl.h"
+    ;
+const char* words_glsl =
+#include "embedded/words.glsl.h"
+    ;
+const char* words_end_glsl =
+#include "embedded/words_end.glsl.h"
+    ;
+
+// As std140 lays out the block of dent.glsl.
+struct alignas(16) Placed {
+    Dent dent;
+};
+struct Block {
+    std::array<Placed, most_dents> dents = {};
+    int count = 0;
+};
+static_assert(sizeof(Dent) == 5 * 4 && sizeof(Placed) == 32);
+
+}  // namespace
+
+void GpuDents::set(std::span<const Dent> dents) {
+    Block block;
+    for (const Dent& dent : dents)
+        if (acts(dent) && block.count < most_dents) block.dents[std::size_t(block.count++)].dent = dent;
+    count_ = block.count;
+    buffer_.upload(std::span(&block, 1));
+}
+
+std::string GpuDents::shader(GLuint binding) {
+    return "#define MOST_DENTS " + std::to_string(most_dents) + "\n#define DENTS " + std::to_string(binding) +
+           "\n" + dent_glsl + words_glsl + dent_inl + words_end_glsl;
+}
+
+}  // namespace palpate
