@@ -1,5 +1,6 @@
 // Dents in pictures: as the same mesh looks that was dented on the host.
 #include "bench/deformations.h"
+#include "palpate/base/files.h"
 #include "palpate/gl/program.h"
 #include "palpate/render/gpu_dents.h"
 #include "palpate/render/renderer.h"
@@ -13,6 +14,8 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <regex>
+#include <sstream>
 #include <string>
 
 namespace palpate {
@@ -97,6 +100,22 @@ TEST_F(WithContext, DentsInAShaderAreThoseOfTheHost) {
             if (count == 0) EXPECT_TRUE(is.positions[i] == at.positions[i] && is.normals[i] == at.normals[i]);
         }
     }
+}
+
+// The lines that an application adds or changes are as many as its own words and the docs say.
+TEST(DentInAnApplication, TakesAsManyLinesAsIsSaid) {
+    const std::string source = PALPATE_SOURCE_DIR, program = "dent_in_an_application";
+    const std::string text = read_text(source + "/examples/programs/" + program + ".cpp"),
+                      docs = read_text(source + "/docs/library.md");
+    const std::regex marked(R"(^\s*[^\s/].*\s// \+( was: .+)?$)");
+    int lines = 0;
+    std::istringstream all(text);
+    for (std::string line; std::getline(all, line);) lines += std::regex_match(line, marked);
+    EXPECT_GT(lines, 0);
+    const std::string said = std::to_string(lines) + " lines";
+    EXPECT_LT(text.find("the " + said), text.find("#include"));
+    EXPECT_NE(docs.find("| `" + program + "` | " + said), std::string::npos) << said;
+    EXPECT_NE(docs.find(said + ", as `examples/programs/" + program + ".cpp`"), std::string::npos) << said;
 }
 
 class DentPictures : public WithContext {
