@@ -46,15 +46,20 @@ void print_summary(const Report& report) {
     };
     fmt::print("{}\n", report.scene);
     for (const Report::Body& body : report.bodies)
-        print_table({{"body", body.name},
-                     {"nodes, springs", fmt::format("{}, {}", grouped((long long)body.nodes),
-                                                    grouped((long long)body.springs))},
-                     {"vertices, faces", fmt::format("{}, {}", grouped((long long)body.vertices),
-                                                     grouped((long long)body.faces))},
-                     {"spacing", fmt::format("{:.2f} mm", 1000 * body.spacing)},
-                     {"mass", fmt::format("{:.3g} kg free", body.mass)},
-                     {"steps", fmt::format("{} of {:.3g} ms", grouped(body.steps), 1000 * body.step)},
-                     {"largest speed", fmt::format("{:.3g} m/s", body.largest_speed)}});
+        if (body.nodes == 0)
+            print_table({{"surface", body.name},
+                         {"vertices, faces", fmt::format("{}, {}", grouped((long long)body.vertices),
+                                                         grouped((long long)body.faces))}});
+        else
+            print_table({{"body", body.name},
+                         {"nodes, springs", fmt::format("{}, {}", grouped((long long)body.nodes),
+                                                        grouped((long long)body.springs))},
+                         {"vertices, faces", fmt::format("{}, {}", grouped((long long)body.vertices),
+                                                         grouped((long long)body.faces))},
+                         {"spacing", fmt::format("{:.2f} mm", 1000 * body.spacing)},
+                         {"mass", fmt::format("{:.3g} kg free", body.mass)},
+                         {"steps", fmt::format("{} of {:.3g} ms", grouped(body.steps), 1000 * body.step)},
+                         {"largest speed", fmt::format("{:.3g} m/s", body.largest_speed)}});
     for (const Report::Tool& tool : report.tools)
         print_table({{"tool", tool.name},
                      {"largest force", fmt::format("{:.3g} N", tool.largest_force)},

@@ -76,7 +76,7 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
       made_(made),
       report_(report),
       team_(made.simulation.threads),
-      skins_(made.models.size()),
+      skins_(made.models.size() + made.stills.size()),
       tools_(scene.tools.size()) {
     Simulation simulation = made.simulation;
     simulation.frame = frame_seconds;
@@ -90,14 +90,33 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
                                 "between the nodes; use more nodes",
                                 tool.name, model.body.name));
     }
+    std::vector<Feel> feels;
+    for (const BodyRecipe& recipe : scene.bodies) feels.push_back(recipe.feel);
+    for (const BodyRecipe& recipe : scene.surfaces) feels.push_back(recipe.feel);
+    for (const Still& still : made.stills) {
+        Report::Body& body = report.bodies.emplace_back();
+        body.name = still.name;
+        body.vertices = still.surface.positions.size();
+        body.faces = still.surface.triangles.size();
+        body.volume = volume(still.surface);
+    }
     for (const ToolRecipe& tool : scene.tools) {
         if (tool.kind == ToolKind::press)
             handles_.emplace_back(Tip(tool));
-        else
+        else if (tool.kind == ToolKind::drag)
             handles_.emplace_back(Grip(tool));
+        else
+            handles_.emplace_back(Probe(tool, feels));
+        probes_ |= tool.kind == ToolKind::dent;
         report.tools.emplace_back().name = tool.name;
     }
-    for (std::size_t m = 0; m < skins_.size(); ++m) skins_[m].triangles = &made.models[m].surface.triangles;
+    const std::size_t models = made.models.size();
+    for (std::size_t m = 0; m < models; ++m) skins_[m].triangles = &made.models[m].surface.triangles;
+    for (std::size_t s = 0; s < made.stills.size(); ++s) {
+        const Mesh& surface = made.stills[s].surface;
+        skins_[models + s] = {surface.positions, surface.normals, &surface.triangles};
+    }
+    velocities_.resize(skins_.size());
     if (!on_gpu(simulation.backend)) map();
 }
 
@@ -127,13 +146,43 @@ std::vector<Motion> Play::colliders(double time, double seconds) const {
     return motions;
 }
 
+std::vector<Dent> Play::dents(std::size_t skin) const {
+    std::vector<Dent> all;
+    for (const auto& handle : handles_)
+        if (const auto* one = std::get_if<Probe>(&handle)) {
+            const std::vector<Dent> more = one->dents(int(skin), time_);
+            all.insert(all.end(), more.begin(), more.end());
+        }
+    return all;
+}
+
+// The probes feel the surfaces as they are at `time`, and guess how they go on.
+void Play::probe(double time, double seconds) {
+    if (!probes_) return;
+    for (std::size_t m = 0; m < made_.models.size(); ++m) {
+        const std::vector<vec3>& now = skins()[m].positions;
+        if (!before_.empty()) {
+            velocities_[m].resize(now.size());
+            for (std::size_t i = 0; i < now.size(); ++i)
+                velocities_[m][i] = (now[i] - before_[m][i]) / float(frame_seconds);
+        }
+    }
+    before_.resize(made_.models.size());
+    for (std::size_t m = 0; m < made_.models.size(); ++m) before_[m] = skins_[m].positions;
+    for (auto& handle : handles_)
+        if (auto* one = std::get_if<Probe>(&handle); one && one->is_there(time))
+            one->advance(time, seconds, skins_, velocities_, !made_.models.empty());
+}
+
 bool Play::advance(double time, double seconds) {
+    probe(time, seconds);
     const Acting on = acting(time, seconds);
     {
         Timed timed(report_.seconds.simulate);
         if (!step(seconds, on)) return false;
     }
     mapped_ = false;
+    time_ = time + seconds;
     if (!on_gpu(made_.simulation.backend)) map();
     record(on, time + seconds, seconds);
     return true;
@@ -147,12 +196,11 @@ Play::Acting Play::acting(double time, double seconds) {
             if (!tip->is_there(time)) continue;
             on.presses.push_back(tip->press(time, seconds, skins()));
             on.tool_of_press.push_back(t);
-        } else {
-            Grip& grip = std::get<Grip>(handles_[t]);
-            const auto drag = grip.drag(time, seconds, made_.models, solvers_);
+        } else if (auto* grip = std::get_if<Grip>(&handles_[t])) {
+            const auto drag = grip->drag(time, seconds, made_.models, solvers_);
             if (!drag) continue;
-            on.bodies[grip.body()].drags.push_back(*drag);
-            on.bodies[grip.body()].tool_of_drag.push_back(t);
+            on.bodies[grip->body()].drags.push_back(*drag);
+            on.bodies[grip->body()].tool_of_drag.push_back(t);
         }
     }
     for (std::size_t i = 0; i < made_.moves.size(); ++i) {
@@ -187,7 +235,7 @@ bool Play::step(double seconds, const Acting& on) {
 
 void Play::map() const {
     Timed timed(report_.seconds.map);
-    for (std::size_t m = 0; m < skins_.size(); ++m)
+    for (std::size_t m = 0; m < solvers_.size(); ++m)
         deform(made_.models[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals,
                nullptr, &team_);
     mapped_ = true;
@@ -214,8 +262,13 @@ void Play::record(const Acting& on, double time, double seconds) {
     }
     for (std::size_t t = 0; t < handles_.size(); ++t) {
         const auto* tip = std::get_if<Tip>(&handles_[t]);
-        const double force = glm::length(impulses[t]) / seconds;
-        const double depth = tip && tools_[t] ? tip->indentation(tools_[t]->centre, skins()) : 0;
+        double force = glm::length(impulses[t]) / seconds;
+        double depth = tip && tools_[t] ? tip->indentation(tools_[t]->centre, skins()) : 0;
+        if (const auto* one = std::get_if<Probe>(&handles_[t]); one && one->is_there(time - seconds)) {
+            tools_[t] = {one->centre(), {}};
+            force = one->force();
+            depth = one->depth();
+        }
         Report::Tool& tool = report_.tools[t];
         tool.largest_force = std::max(tool.largest_force, force);
         tool.deepest_indentation = std::max(tool.deepest_indentation, depth);

@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/base/team.h"
 #include "palpate/run/grip.h"
+#include "palpate/run/probe.h"
 #include "palpate/run/report.h"
 #include "palpate/run/tip.h"
 #include "palpate/scene/build.h"
@@ -14,8 +15,8 @@
 
 namespace palpate {
 
-/// A scene in motion: a solver and a skin for each body, a tip or a grip for each tool. What it does goes
-/// into the report.
+/// A scene in motion: a solver and a skin for each body, a tip, a grip or a probe for each tool. What it does
+/// goes into the report.
 class Play {
  public:
     /// On a GPU, in that context.
@@ -36,7 +37,12 @@ class Play {
 
     // ---- what there is to see ----
 
+    /// The bodies', then those that nothing moves.
     const std::vector<Skin>& skins() const;
+
+    /// What all tools make of a skin.
+    std::vector<Dent> dents(std::size_t skin) const;
+
     Nodes nodes(std::size_t body) const { return solvers_[body]->nodes(); }
     GpuNodes gpu_nodes(std::size_t body) const { return solvers_[body]->gpu_nodes(); }
 
@@ -55,6 +61,7 @@ class Play {
     Acting acting(double time, double seconds);
     bool step(double seconds, const Acting& on);
     void map() const;
+    void probe(double time, double seconds);
     void record(const Acting& on, double time, double seconds);
 
     const Scene& scene_;
@@ -64,9 +71,13 @@ class Play {
     std::vector<Stats> stats_;
     mutable Team team_;  // that carries the skins
     mutable std::vector<Skin> skins_;
-    mutable bool mapped_ = false;                   // they are where the nodes are
-    std::vector<std::variant<Tip, Grip>> handles_;  // one a tool
+    mutable bool mapped_ = false;                          // they are where the nodes are
+    std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
+    double time_ = 0;                            // s
+    bool probes_ = false;                        // whether any tool is one
+    std::vector<std::vector<vec3>> before_;      // where the skins were a frame ago, for those
+    std::vector<std::vector<vec3>> velocities_;  // m/s, since then
 };
 
 /// How a collider moves that is given about its pivot: evenly from one pose to the next.

@@ -28,7 +28,7 @@ double largest(const std::vector<T>& list, double T::*member) {
 double shortest_step(const Report& report) {
     double step = 0;
     for (const Report::Body& body : report.bodies)
-        if (step == 0 || body.step < step) step = body.step;
+        if (body.step > 0 && (step == 0 || body.step < step)) step = body.step;
     return step;
 }
 

@@ -21,6 +21,12 @@ vec3 middle(const Model& model) {
     return box.centre();
 }
 
+// Behind a tip at the origin; nothing to see if it has none.
+Collider shaft_of(const ToolRecipe& tool) {
+    if (!(tool.shaft > 0)) return {Sphere{}};
+    return {Capsule{vec3(0), -tool.shaft * glm::normalize(tool.along), tool.radius}};
+}
+
 }  // namespace
 
 Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, const gl::Context* context)
@@ -31,11 +37,16 @@ Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, 
                                                 : renderer_.add(model.surface));
         looks_.push_back(look(scene.bodies[m], model));
     }
-    for (const Collider& collider : made.simulation.colliders) {
-        Shape& shape = shapes_.emplace_back();
-        shape.rest = shape.now = shape_mesh(collider);
-        if (!shape.rest.triangles.empty()) shape.mesh = renderer_.add(shape.rest);
+    for (std::size_t s = 0; s < made.stills.size(); ++s) {
+        const BodyRecipe& recipe = scene.surfaces[s];
+        meshes_.push_back(renderer_.add(made.stills[s].surface));
+        looks_.push_back({.colour = recipe.colour,
+                          .shine = recipe.shine,
+                          .shows_normals = recipe.shade == Shade::normals});
     }
+    for (const Collider& collider : made.simulation.colliders) shapes_.push_back(shape_of(collider));
+    for (const ToolRecipe& tool : scene.tools) shafts_.push_back(shape_of(shaft_of(tool)));
+    dents_.resize(meshes_.size());
     if (!settings.video.empty())
         film_ =
             std::make_unique<Film>(settings.video, settings.width, settings.height, 60 / frames_per_picture);
@@ -44,6 +55,13 @@ Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, 
         for (const Model& model : made.models) springs_.push_back(spring_ends(model.body));
     camera_ = scene.camera;
     camera_.look_at = looked_at();
+}
+
+Show::Shape Show::shape_of(const Collider& collider) {
+    Shape shape;
+    shape.rest = shape.now = shape_mesh(collider);
+    if (!shape.rest.triangles.empty()) shape.mesh = renderer_.add(shape.rest);
+    return shape;
 }
 
 Look Show::look(const BodyRecipe& recipe, const Model& model) {
@@ -89,6 +107,8 @@ vec3 Show::looked_at() const {
     if (const auto* point = std::get_if<vec3>(&scene_.look_at)) return *point;
     for (const Model& model : made_.models)
         if (model.body.name == std::get<std::string>(scene_.look_at)) return middle(model);
+    for (const Still& still : made_.stills)
+        if (still.name == std::get<std::string>(scene_.look_at)) return bounds(still.surface).centre();
     return vec3(0);
 }
 
@@ -109,9 +129,31 @@ Picture Show::picture(double time, const Play& play) {
         }
         if (settings_.lattice) picture.wires.push_back({play.nodes(m).positions, springs_[m], {}});
     }
+    for (std::size_t s = made_.models.size(); s < meshes_.size(); ++s) {
+        const Skin& skin = play.skins()[s];
+        picture.surfaces.push_back(
+            {.mesh = meshes_[s], .positions = skin.positions, .normals = skin.normals, .look = looks_[s]});
+    }
+    for (std::size_t s = 0; s < meshes_.size(); ++s) {
+        dents_[s] = play.dents(s);
+        picture.surfaces[s].dents = dents_[s];
+    }
+    add_shafts(play, picture);
     add_tools(play, picture);
     add_colliders(play.colliders(time, frame_seconds), picture);
     return picture;
+}
+
+void Show::add_shafts(const Play& play, Picture& picture) {
+    for (std::size_t t = 0; t < play.tools().size(); ++t) {
+        const auto& tool = play.tools()[t];
+        auto& [rest, now, mesh] = shafts_[t];
+        if (!tool || rest.triangles.empty()) continue;
+        for (std::size_t i = 0; i < rest.positions.size(); ++i)
+            now.positions[i] = tool->centre + rest.positions[i];
+        picture.surfaces.push_back(
+            {mesh, now.positions, now.normals, {scene_.tools[t].colour, collider_shine}});
+    }
 }
 
 void Show::add_tools(const Play& play, Picture& picture) {

@@ -28,10 +28,16 @@ class Show {
     void finish();
 
  private:
+    struct Shape {
+        Mesh rest, now;  // of a collider: as it is given, and where it is
+        int mesh = 0;
+    };
+    Shape shape_of(const Collider& collider);
     Look look(const BodyRecipe& recipe, const Model& model);
     bool mapped_where_drawn(std::size_t body) const;
     vec3 looked_at() const;
     Picture picture(double time, const Play& play);
+    void add_shafts(const Play& play, Picture& picture);
     void add_tools(const Play& play, Picture& picture);
     void add_colliders(const std::vector<Motion>& motions, Picture& picture);
 
@@ -40,16 +46,14 @@ class Show {
     const RunSettings& settings_;
     Renderer renderer_;
     Camera camera_;
-    std::vector<int> meshes_;  // of the bodies' surfaces
+    std::vector<int> meshes_;  // of the bodies' surfaces, and those that nothing moves
     std::vector<Look> looks_;
     std::vector<std::vector<uvec2>> springs_;
-    struct Shape {
-        Mesh rest, now;  // of a collider: as it is given, and where it is
-        int mesh = 0;
-    };
-    std::vector<Shape> shapes_;      // one a collider
-    std::vector<vec3> drag_points_;  // where each drag pulls from and to
-    std::vector<uvec2> drag_lines_;  // between those
+    std::vector<Shape> shapes_;             // one a collider
+    std::vector<vec3> drag_points_;         // where each drag pulls from and to
+    std::vector<uvec2> drag_lines_;         // between those
+    std::vector<Shape> shafts_;             // one a tool
+    std::vector<std::vector<Dent>> dents_;  // one list a surface
     std::unique_ptr<Film> film_;
     double next_image_ = 0;
 };

@@ -55,18 +55,19 @@ std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std
     return std::nullopt;
 }
 
+vec3 brought_to_touch(const ToolRecipe& recipe, const std::vector<Skin>& skins) {
+    const vec3 along = glm::normalize(recipe.along);
+    const auto way = way_to_touch(*recipe.from, along, recipe.radius, skins);
+    if (!way)
+        throw Error("the tip meets no surface on its way, or starts inside one", "tool " + recipe.name,
+                    "change its `from` or `along`, so that a body lies ahead");
+    return *recipe.from + *way * along;
+}
+
 Press Tip::press(double time, double frame, const std::vector<Skin>& skins) {
     if (untouched_.empty()) {
         untouched_ = skins;
-        if (recipe_.from) {
-            const vec3 along = glm::normalize(recipe_.along);
-            const auto way = way_to_touch(*recipe_.from, along, recipe_.radius, skins);
-            if (!way)
-                throw Error("the tip meets no surface on its way, or starts inside one",
-                            "tool " + recipe_.name,
-                            "change its `from` or `along`, so that a body lies ahead");
-            origin_ = *recipe_.from + *way * along;
-        }
+        if (recipe_.from) origin_ = brought_to_touch(recipe_, skins);
     }
     const vec3 here = centre(time), there = centre(time + frame);
     return {here, (there - here) / float(frame), recipe_.radius, recipe_.stiffness};

@@ -38,6 +38,10 @@ class Tip {
     std::vector<Skin> untouched_;
 };
 
+/// Where the tool's tip, moved from its `from` along its `along`, first touches a surface, m. Throws Error if
+/// it never does, or touches one where it starts.
+vec3 brought_to_touch(const ToolRecipe& recipe, const std::vector<Skin>& skins);
+
 /// How far a ball can go from `from` along the unit vector `along` before it touches a surface; nothing if it
 /// never does, or touches one where it starts.
 std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std::vector<Skin>& skins);

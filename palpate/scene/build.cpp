@@ -223,6 +223,15 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, std::vector<std::s
     return model;
 }
 
+Still build_still(const BodyRecipe& wanted, const Scene& scene, std::vector<std::string>& notes,
+                  const Progress& progress) {
+    const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
+    CleanSurface made = make_surface(recipe, scene.folder, progress);
+    for (const std::string& note : made.notes)
+        notes.push_back(fmt::format("surface {}: {}", recipe.name, note));
+    return {recipe.name, std::move(made.mesh)};
+}
+
 // ---- what moves ----
 
 Moved find_moved(const MoveRecipe& recipe, std::size_t number, const Scene& scene,
@@ -329,6 +338,8 @@ Models build(const Scene& scene, const Progress& progress) {
     Models result;
     for (const BodyRecipe& recipe : scene.bodies)
         result.models.push_back(build_one(recipe, scene, result.notes, progress));
+    for (const BodyRecipe& recipe : scene.surfaces)
+        result.stills.push_back(build_still(recipe, scene, result.notes, progress));
     for (std::size_t i = 0; i < scene.moves.size(); ++i) {
         result.moves.push_back(find_moved(scene.moves[i], i + 1, scene, result.models, result.notes));
         pin(result.models[result.moves[i].body].body, result.moves[i].nodes);
@@ -340,7 +351,7 @@ Models build(const Scene& scene, const Progress& progress) {
         if (tool.kind == ToolKind::press)
             result.simulation.contact +=
                 pressure_per_metre({.radius = tool.radius, .stiffness = tool.stiffness});
-        else
+        else if (tool.kind == ToolKind::drag)
             result.simulation.pull += tool.stiffness;
     return result;
 }

@@ -17,6 +17,12 @@ struct Model {
     Image colour_map, normal_map;  // as the recipe wants them; else empty
 };
 
+/// A surface that nothing moves.
+struct Still {
+    std::string name;
+    Mesh surface;
+};
+
 /// The nodes of a prescribed motion.
 struct Moved {
     std::size_t body = 0;    // its number
@@ -27,6 +33,7 @@ struct Moved {
 /// What a scene's recipes make, in the recipes' order.
 struct Models {
     std::vector<Model> models;
+    std::vector<Still> stills;
     Simulation simulation;     // the scene's, with its colliders and the strength of its tools
     std::vector<vec3> pivots;  // m: a collider that moves is given about this point; one that stands, about 0
     std::vector<Moved> moves;

@@ -93,18 +93,46 @@ void check_maps(const BodyRecipe& body, const Require& require) {
             "remove one or the other");
 }
 
+void check(const Feel& feel, const Require& require) {
+    require(feel.stiffness > 0 && feel.dent_width > 0, "touch.stiffness or touch.width is not above zero",
+            "give them in N/m and m");
+    require(std::min({feel.damping, feel.friction.still, feel.friction.sliding, feel.yield}) >= 0,
+            "touch.damping, friction, sliding or yield is negative", "use 0 or more");
+    require(feel.friction.sliding <= feel.friction.still,
+            "touch.sliding is above touch.friction, so nothing would ever stick", "make it no larger");
+}
+
+// What every recipe of a surface says.
+void check_surface(const BodyRecipe& body, const Require& require) {
+    require(!body.volume.empty() || !body.iso, "iso without a volume", "remove it");
+    require(body.size == 0 || !body.units, "size beside units, of which one must count", "remove one");
+    require(std::min(body.size, body.shine) >= 0, "a negative number where none makes sense",
+            "use a positive one");
+    require(body.faces >= 0 && body.smooth.value_or(0) >= 0 && body.smooth.value_or(0) <= 1000,
+            "faces or smooth is out of range", "use 0 or more, and at most 1000 passes");
+    const RepairSettings& repair = body.repair;
+    require(std::min({repair.weld, repair.specks, repair.voxel}) >= 0 && repair.specks < 1,
+            "weld, specks or voxel is out of range", "give lengths in m, and specks from 0 to below 1");
+    check(body.feel, require);
+}
+
+void check_still(const BodyRecipe& surface, const Source& source) {
+    const Require require = require_of("surface " + surface.name, surface.line, source);
+    require(surface.volume.empty() != surface.surface.empty(), "wants a volume or a surface", "name a file");
+    check_surface(surface, require);
+}
+
 void check(const BodyRecipe& body, const Source& source) {
     const Require require = require_of("body " + body.name, body.line, source);
     const Material& m = body.material;
     const int sources =
         !body.volume.empty() + !body.surface.empty() + body.dims.has_value() + body.cloth.has_value();
     require(sources == 1, "wants exactly one of volume, surface, dims and cloth", "give it one");
-    require(!body.volume.empty() || !body.iso, "iso without a volume", "remove it");
+    check_surface(body, require);
     require((!body.centre && body.size == 0) ||
                 std::all_of(body.regions.begin(), body.regions.end(),
                             [](const Region& region) { return region.labels.empty(); }),
             "centre or size beside labels, which would stay as they are", "use move and units");
-    require(body.size == 0 || !body.units, "size beside units, of which one must count", "remove one");
     require(!body.sheet || !body.surface.empty(), "sheet without a surface", "name its file");
     require(!body.sheet || body.spacing == 0, "sheet beside spacing: its nodes are its vertices",
             "remove spacing, or change the sheet by faces");
@@ -119,15 +147,10 @@ void check(const BodyRecipe& body, const Source& source) {
     check_springs(body, require);
     require((m.density > 0) != (m.mass > 0), "wants density or mass, one of them above zero", "give it one");
     require(std::min({m.youngs_modulus, m.stiffness, m.density, m.mass, m.damping, m.link_damping,
-                      body.spacing, body.size, body.shine}) >= 0,
+                      body.spacing}) >= 0,
             "a negative number where none makes sense", "use a positive one");
     require(body.nodes > 0 && body.nodes <= 10'000'000, "nodes is not from 1 to 10 million",
             "choose a number there");
-    require(body.faces >= 0 && body.smooth.value_or(0) >= 0 && body.smooth.value_or(0) <= 1000,
-            "faces or smooth is out of range", "use 0 or more, and at most 1000 passes");
-    const RepairSettings& repair = body.repair;
-    require(std::min({repair.weld, repair.specks, repair.voxel}) >= 0 && repair.specks < 1,
-            "weld, specks or voxel is out of range", "give lengths in m, and specks from 0 to below 1");
     if (body.dims || body.cloth) check_grid(body, require);
     check_maps(body, require);
     check(body.pin, "pin.", require);
@@ -189,7 +212,10 @@ void check(MoveRecipe& move, std::size_t number, const std::set<std::string>& bo
 
 void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const Source& source) {
     const Require require = require_of("tool " + tool.name, tool.line, source);
-    require(tool.device == "script", "no device \"" + tool.device + "\"", "the device there is: script");
+    require(tool.device == "script" || (tool.device == "hand" && tool.kind == ToolKind::dent),
+            fmt::format("no device \"{}\" for a {}", tool.device, name_of(tool.kind)),
+            "the devices there are: script, and for a dent hand");
+    require(tool.shaft >= 0, "shaft is negative", "give it in m");
     require(tool.radius > 0 && tool.stiffness > 0, "radius and stiffness must be above zero",
             "give both, in m and N/m");
     require(!tool.path.empty(), "no path", "give it a file or rows of [t, x, y, z]");
@@ -217,27 +243,35 @@ void Source::fail(int line, const std::string& what, const std::string& remedy) 
 }
 
 void check(Scene& scene, const Source& source) {
-    if (scene.bodies.empty()) source.fail(0, "no body", "add a [[body]]");
+    if (scene.bodies.empty() && scene.surfaces.empty()) source.fail(0, "no body", "add a [[body]]");
     std::set<std::string> names;
+    auto name = [&](BodyRecipe& one, const char* kind, std::size_t number) {
+        if (one.name.empty()) one.name = fmt::format("{}{}", kind, number);
+        check_name(one.name, one.line, source);
+        if (!names.insert(one.name).second)
+            source.fail(one.line, "a second body or surface named " + one.name, "give each its own name");
+    };
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-        BodyRecipe& body = scene.bodies[i];
-        if (body.name.empty()) body.name = fmt::format("body{}", i + 1);
-        check_name(body.name, body.line, source);
-        if (!names.insert(body.name).second)
-            source.fail(body.line, "a second body named " + body.name, "give each its own name");
-        check(body, source);
+        name(scene.bodies[i], "body", i + 1);
+        check(scene.bodies[i], source);
+    }
+    const std::set<std::string> bodies = names;
+    for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+        name(scene.surfaces[i], "surface", i + 1);
+        check_still(scene.surfaces[i], source);
     }
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) check(scene.colliders[i], i + 1, source);
-    for (std::size_t i = 0; i < scene.moves.size(); ++i) check(scene.moves[i], i + 1, names, source);
+    for (std::size_t i = 0; i < scene.moves.size(); ++i) check(scene.moves[i], i + 1, bodies, source);
     for (std::size_t i = 0; i < scene.tools.size(); ++i) {
         if (scene.tools[i].name.empty()) scene.tools[i].name = fmt::format("tool{}", i + 1);
         check_name(scene.tools[i].name, scene.tools[i].line, source);
-        check(scene.tools[i], names, source);
+        check(scene.tools[i], bodies, source);
     }
     if (scene.tools.size() > 8) source.fail(0, "more than 8 tools", "use fewer");
     if (scene.colliders.size() > 16) source.fail(0, "more than 16 colliders", "use fewer");
-    if (const auto* name = std::get_if<std::string>(&scene.look_at); name && !names.contains(*name))
-        source.fail(0, "camera.look_at names no body: " + *name, "name one of the bodies, or give a point");
+    if (const auto* at = std::get_if<std::string>(&scene.look_at); at && !names.contains(*at))
+        source.fail(0, "camera.look_at names no body or surface: " + *at,
+                    "name one of them, or give a point");
     if (scene.simulation.threads < 1 || scene.simulation.threads > most_threads)
         source.fail(0, fmt::format("{} threads", scene.simulation.threads),
                     fmt::format("choose 1 to {}; no more than the machine has cores", most_threads));

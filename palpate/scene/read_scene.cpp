@@ -69,13 +69,21 @@ void read_files(Reader& read, const char* key, std::string& first, std::vector<s
     others.erase(others.begin());
 }
 
-void read_fields(Reader& read, BodyRecipe& body) {
+void read_fields(Reader& read, Feel& feel) {
+    read("stiffness", feel.stiffness);
+    read("damping", feel.damping);
+    read("friction", feel.friction.still);
+    feel.friction.sliding = std::min(feel.friction.sliding, feel.friction.still);
+    read("sliding", feel.friction.sliding);
+    read("width", feel.dent_width);
+    read("yield", feel.yield);
+}
+
+// What makes a surface, how it looks and how it feels.
+void read_surface(Reader& read, BodyRecipe& body) {
     read("name", body.name);
     read("volume", body.volume);
     read_files(read, "surface", body.surface, body.stand_ins);
-    read("dims", body.dims);
-    read("cloth", body.cloth);
-    read("sheet", body.sheet);
     read("iso", body.iso);
     read("units", body.units);
     read("rotate", body.rotate);
@@ -89,6 +97,17 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("voxel", body.repair.voxel);
     read("smooth", body.smooth);
     read("faces", body.faces);
+    read("colour", body.colour);
+    read("shine", body.shine);
+    read("shade", body.shade);
+    read.table("touch", [&](Reader& inside) { read_fields(inside, body.feel); });
+}
+
+void read_fields(Reader& read, BodyRecipe& body) {
+    read_surface(read, body);
+    read("dims", body.dims);
+    read("cloth", body.cloth);
+    read("sheet", body.sheet);
     read("nodes", body.nodes);
     read("spacing", body.spacing);
     read("cage", body.cage);
@@ -101,13 +120,10 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("link_damping", body.material.link_damping);
     read("links", body.material.links);
     read("mapping", body.mapping);
-    read("colour", body.colour);
-    read("shine", body.shine);
     read("colour_map", body.colour_map);
     if (!body.colour_map.empty() && !read.has("colour")) body.colour = vec3(1);
     read("normal_map", body.normal_map);
     read("weave", body.weave);
-    read("shade", body.shade);
     read.table("pin", [&](Reader& inside) { read_fields(inside, body.pin); });
     read.each("region", [&](Reader& inside, int line) {
         Region& region = body.regions.emplace_back();
@@ -226,19 +242,24 @@ void read_fields(Reader& read, ToolRecipe& tool, const Source& source, const std
     read("stiffness", tool.stiffness);
     read("from", tool.from);
     read("along", tool.along);
+    read("shaft", tool.shaft);
     read("body", tool.body);
     read("near", tool.near);
     read("relative", tool.relative);
     read("colour", tool.colour);
     read_path_value(read, tool.path, Rows::places, source, folder);
-    const bool drags = tool.kind == ToolKind::drag;
-    for (const char* key : {"from", "along"})
-        if (drags && read.has(key))
-            source.fail(tool.line, fmt::format("\"{}\" means nothing to a drag", key), "remove it");
-    for (const char* key : {"body", "near", "relative"})
-        if (!drags && read.has(key))
-            source.fail(tool.line, fmt::format("\"{}\" means nothing to a press", key),
-                        "remove it, or write kind = \"drag\"");
+    auto refuse = [&](std::initializer_list<const char*> keys, const std::string& remedy) {
+        for (const char* key : keys)
+            if (read.has(key))
+                source.fail(tool.line, fmt::format("\"{}\" means nothing to a {}", key, name_of(tool.kind)),
+                            remedy);
+    };
+    if (tool.kind == ToolKind::drag)
+        refuse({"from", "along", "shaft"}, "remove it");
+    else
+        refuse({"body", "near", "relative"}, "remove it, or write kind = \"drag\"");
+    if (tool.kind == ToolKind::dent)
+        refuse({"stiffness"}, "say it of the surfaces: touch = { stiffness = 400 }");
 }
 
 // Wind brings air with it.
@@ -311,6 +332,11 @@ void read_fields(Reader& read, Scene& scene, const Source& source) {
         body.line = line;
         read_fields(inside, body);
     });
+    read.each("surface", [&](Reader& inside, int line) {
+        BodyRecipe& surface = scene.surfaces.emplace_back();
+        surface.line = line;
+        read_surface(inside, surface);
+    });
     read.each("collider", [&](Reader& inside, int line) {
         ColliderRecipe& collider = scene.colliders.emplace_back();
         collider.line = line;
@@ -370,7 +396,8 @@ std::vector<std::string> target(const Change& change) {
 bool names_source(const Change& change) {
     const std::vector<std::string> words = target(change);
     constexpr std::string_view sources[] = {"volume", "surface", "dims", "cloth"};
-    return words.size() == 3 && words[0] == "body" && std::ranges::count(sources, words[2]) > 0;
+    return words.size() == 3 && (words[0] == "body" || words[0] == "surface") &&
+           std::ranges::count(sources, words[2]) > 0;
 }
 
 void apply(toml::table& root, const Change& change) {

@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/body/collider.h"
 #include "palpate/body/embedding.h"
+#include "palpate/body/feel.h"
 #include "palpate/body/material.h"
 #include "palpate/body/simulation.h"
 #include "palpate/mesh/mesh.h"
@@ -91,6 +92,7 @@ struct BodyRecipe {
     std::string normal_map;      // a picture of normals in the tangent frame, y up, 0 to 255 as -1 to 1; or
     std::optional<ivec2> weave;  // that of a cloth of so many threads across u and v (mesh/relief.h)
     Shade shade = Shade::colour;
+    Feel feel;  // under a tool that is felt
     int line = 0;
 
     bool has_normal_map() const { return !normal_map.empty() || weave; }
@@ -125,10 +127,12 @@ struct MoveRecipe {
 enum class ToolKind {
     press,  // a round tip that pushes
     drag,   // a spring that pulls one node along
+    dent,   // a hand's tip that feels surfaces and dents their pictures; bodies do not feel it (2007)
 };
 
 inline std::span<const Named<ToolKind>> names(ToolKind) {
-    static constexpr Named<ToolKind> all[] = {{ToolKind::press, "press"}, {ToolKind::drag, "drag"}};
+    static constexpr Named<ToolKind> all[] = {
+        {ToolKind::press, "press"}, {ToolKind::drag, "drag"}, {ToolKind::dent, "dent"}};
     return all;
 }
 
@@ -141,11 +145,12 @@ struct ToolRecipe {
     float stiffness = 400;  // N/m, see Press and Drag; 50 for a drag
     Path path;              // s, m; a file of rows or the rows themselves
     vec3 colour = vec3(0.25f, 0.45f, 0.75f);
-    // ---- of a press ----
+    // ---- of a press, and of a dent ----
     /// If given, the path starts where the tip, moved from this point ...
     std::optional<vec3> from;
     /// ... in this direction, first touches a surface; the path's positions are counted from there.
     vec3 along = vec3(0, -1, 0);
+    float shaft = 0;  // m: a rod behind the tip, against `along`, that is drawn only
     // ---- of a drag ----
     std::string body;          // whose node it pulls; empty: the nearest body's
     std::optional<vec3> near;  // it takes the node nearest to this point; else to the path's first position
@@ -164,6 +169,8 @@ struct Scene {
     std::variant<vec3, std::string> look_at = vec3(0);  // a point, or the name of a body
     Light light;
     std::vector<BodyRecipe> bodies;
+    std::vector<BodyRecipe>
+        surfaces;  // that nothing moves: of these recipes what makes a surface, its look and feel
     std::vector<ColliderRecipe> colliders;
     std::vector<MoveRecipe> moves;
     std::vector<ToolRecipe> tools;

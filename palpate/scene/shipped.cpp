@@ -22,6 +22,9 @@ const std::vector<ShippedScene>& shipped_scenes() {
         scene("head",
 #include "embedded/head.toml.h"
               ),
+        scene("catheter",
+#include "embedded/catheter.toml.h"
+              ),
         scene("drape",
 #include "embedded/drape.toml.h"
               ),

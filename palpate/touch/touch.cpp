@@ -180,6 +180,7 @@ void Touch::tell(double now, dvec3 force) {
     };
     for (std::size_t s = 0; s < lasting_.size(); ++s)
         for (const Dent& dent : lasting_[s]) add(dent, s);
+    told_.lasting = told_.count;
     for (const Contact& contact : proxy_.contacts()) {
         const auto s = std::size_t(contact.surface);
         const vec3 place(contact.point);

@@ -42,6 +42,7 @@ struct Felt {
     std::array<Dent, most_dents> dents = {};
     std::array<int, most_dents> surfaces = {};  // whose they are
     int count = 0;
+    int lasting = 0;  // the first so many of them stay
 
     std::vector<Dent> dents_of(int surface) const;
 };

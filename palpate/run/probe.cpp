@@ -1,0 +1,70 @@
+#include "palpate/run/probe.h"
+
+#include "palpate/base/error.h"
+#include "palpate/touch/make_device.h"
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double rate = 1000;   // Hz
+constexpr float beyond = 0.1f;  // m around the hand that it knows of what moves: more than it goes in a frame
+
+}  // namespace
+
+Probe::Probe(const ToolRecipe& recipe, std::vector<Feel> feels) : recipe_(recipe), feels_(std::move(feels)) {}
+
+void Probe::begin(double time, const std::vector<Skin>& skins) {
+    const vec3 origin = recipe_.from ? brought_to_touch(recipe_, skins) : vec3(0);
+    Path path = recipe_.path;
+    for (Waypoint& point : path) {
+        point.time -= time + 1 / rate;  // the device counts from its first read
+        point.position += origin;
+    }
+    start_ = time;
+    touch_ = std::make_unique<Touch>(make_device(recipe_.device, {.path = std::move(path)}),
+                                     TouchSettings{.radius = recipe_.radius, .feels = feels_});
+}
+
+void Probe::advance(double time, double seconds, const std::vector<Skin>& skins,
+                    const std::vector<std::vector<vec3>>& velocities, bool moving) {
+    if (!touch_) begin(time, skins);
+    if (moving || !knows_surfaces_) touch_->feel(patch(time, skins, velocities));
+    knows_surfaces_ = true;
+    double sum = 0;
+    long count = 0;
+    for (; start_ + double(ticks_ + 1) / rate <= time + seconds + 1e-9; ++count) {
+        touch_->tick(start_ + double(++ticks_) / rate);
+        felt_ = touch_->felt();
+        sum += glm::length(felt_.force);
+    }
+    if (count > 0) force_ = sum / double(count);
+    depth_ = 0;
+    for (int i = felt_.lasting; i < felt_.count; ++i)
+        depth_ = std::max(depth_, double(felt_.dents[std::size_t(i)].depth));
+}
+
+// All of what stands still, once and for all; of what moves the neighbourhood.
+Patch Probe::patch(double time, const std::vector<Skin>& skins,
+                   const std::vector<std::vector<vec3>>& velocities) const {
+    std::vector<Touchable> surfaces;
+    bool anything_moves = false;
+    for (std::size_t s = 0; s < skins.size(); ++s) {
+        surfaces.push_back({skins[s].positions, *skins[s].triangles, velocities[s]});
+        anything_moves |= !velocities[s].empty();
+    }
+    if (!anything_moves) return Patch(surfaces);
+    const vec3 hand = ticks_ > 0 ? felt_.proxy : position(recipe_.path, time);
+    return Patch(surfaces, hand, beyond, time);
+}
+
+std::vector<Dent> Probe::dents(int surface, double time) const {
+    std::vector<Dent> list;
+    const int count = is_there(time) ? felt_.count : felt_.lasting;
+    for (int i = 0; i < count; ++i)
+        if (felt_.surfaces[std::size_t(i)] == surface) list.push_back(felt_.dents[std::size_t(i)]);
+    return list;
+}
+
+}  // namespace palpate

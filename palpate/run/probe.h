@@ -1,0 +1,50 @@
+#pragma once
+#include "palpate/run/tip.h"
+#include "palpate/touch/touch.h"
+
+#include <memory>
+#include <vector>
+
+namespace palpate {
+
+/// A tool that is felt: a device along a scripted path, what pushes it back, and the dents that it leaves in
+/// pictures (2007). Its thousand ticks a second go by the run's own clock.
+class Probe {
+ public:
+    /// `feels`: of all surfaces, in the order of the skins.
+    Probe(const ToolRecipe& recipe, std::vector<Feel> feels);
+
+    bool is_there(double time) const { return within(recipe_.path, time); }
+
+    /// From `time` on, at which it is there. At the path's first time its tip is brought to the surface that
+    /// it shall touch. `moving`: the skins have moved since the last call, at these velocities, m/s (one a
+    /// vertex; none for a skin that stands still).
+    void advance(double time, double seconds, const std::vector<Skin>& skins,
+                 const std::vector<std::vector<vec3>>& velocities, bool moving);
+
+    /// The dents in a surface at a time; without those that spring back if the tip is no longer there.
+    std::vector<Dent> dents(int surface, double time) const;
+
+    vec3 centre() const { return felt_.hand; }  // m
+    double force() const { return force_; }     // N, mean over the last call
+    double depth() const { return depth_; }     // m, at its end
+
+    /// Why it was let go of, if it ever was after it had begun; for the report's notes.
+    Held held() const { return felt_.held; }
+
+ private:
+    void begin(double time, const std::vector<Skin>& skins);
+    Patch patch(double time, const std::vector<Skin>& skins,
+                const std::vector<std::vector<vec3>>& velocities) const;
+
+    const ToolRecipe& recipe_;
+    std::vector<Feel> feels_;
+    std::unique_ptr<Touch> touch_;
+    double start_ = 0;  // s
+    long ticks_ = 0;
+    bool knows_surfaces_ = false;
+    Felt felt_ = {};
+    double force_ = 0, depth_ = 0;
+};
+
+}  // namespace palpate
