@@ -27,6 +27,7 @@ const std::map<std::string, std::set<std::string>> may_include = {
     {"solver/feedback", {"base", "mesh", "body", "gl"}},
     {"solver/fragment", {"base", "mesh", "body", "gl"}},
     {"solver/compute", {"base", "mesh", "body", "gl"}},
+    {"touch", {"base", "mesh", "body", "scene"}},
     {"render", {"base", "mesh", "gl", "body", "scene"}},
     {"run", {"base", "mesh", "gl", "body", "scene", "solver", "render"}},
 };
