@@ -1,8 +1,11 @@
 #pragma once
+#include <algorithm>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpate {
 
@@ -35,6 +38,31 @@ std::string all_names() {
     std::string list;
     for (const auto& n : names(E{})) list += (list.empty() ? "" : ", ") + std::string(n.name);
     return list;
+}
+
+/// How many letters must be changed, added or taken away to turn one word into the other.
+inline int edits(std::string_view a, std::string_view b) {
+    std::vector<int> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        int corner = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const int kept = corner + (a[i] != b[j]);
+            corner = row[j + 1];
+            row[j + 1] = std::min({kept, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+/// The name that a word was perhaps meant to be.
+template <class E>
+std::string_view nearest_name(std::string_view word) {
+    const auto all = names(E{});
+    return std::min_element(
+               all.begin(), all.end(),
+               [&](const auto& a, const auto& b) { return edits(a.name, word) < edits(b.name, word); })
+        ->name;
 }
 
 }  // namespace palpate

@@ -8,9 +8,9 @@
 
 namespace palpate {
 
-/// A plain struct that one thread writes and any others read, whole. The writer never waits: what a reader read while
-/// it was at it, the reader drops (a sequence lock). Its words are atomic and ordered one by one, without fences, so
-/// that this is exact in C++'s terms and not only on processors that happen to do it.
+/// A plain struct that one thread writes and any others read, whole. The writer never waits: what a reader
+/// read while it was at it, the reader drops (a sequence lock). Its words are atomic and ordered one by one,
+/// without fences, so that this is exact in C++'s terms and not only on processors that happen to do it.
 template <class T>
 class Shared {
     static_assert(std::is_trivially_copyable_v<T>, "what is shared is copied word by word");
@@ -29,8 +29,8 @@ class Shared {
         turn_.store(turn + 2, std::memory_order_release);
     }
 
-    /// False, and `value` as it was, if the writer was at it. For a reader that may not wait, since the writer may be
-    /// asleep in the middle of a word.
+    /// False, and `value` as it was, if the writer was at it. For a reader that may not wait, since the
+    /// writer may be asleep in the middle of a word.
     bool try_load(T& value) const noexcept {
         std::array<std::uint64_t, words> copy;
         const unsigned before = turn_.load(std::memory_order_acquire);

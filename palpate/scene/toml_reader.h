@@ -12,28 +12,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 namespace palpate {
-
-/// How many letters must be changed, added or taken away to turn one word into the other.
-inline int edits(std::string_view a, std::string_view b) {
-    std::vector<int> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        int corner = row[0]++;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const int kept = corner + (a[i] != b[j]);
-            corner = row[j + 1];
-            row[j + 1] = std::min({kept, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
-}
 
 inline int line_of(const toml::node& node) { return int(node.source().begin.line); }
 

@@ -1,0 +1,47 @@
+#include "palpate/touch/devices/faulty.h"
+
+#include <limits>
+
+namespace palpate {
+
+Faulty::Faulty(std::unique_ptr<Device> inner, std::vector<Fault> faults, std::function<void(double)> sleep)
+    : Decorator(std::move(inner)), faults_(std::move(faults)), sleep_(std::move(sleep)) {}
+
+void Faulty::open() {
+    start_.reset();
+    last_.reset();
+    Decorator::open();
+}
+
+const Fault* Faulty::due(FaultKind kind) const {
+    for (const Fault& fault : faults_)
+        if (fault.kind == kind && time_ >= fault.from && time_ < fault.to) return &fault;
+    return nullptr;
+}
+
+bool Faulty::read(double now, Hand& hand) noexcept {
+    if (!start_) start_ = now;
+    time_ = now - *start_;
+    if (const Fault* stall = due(FaultKind::stall)) sleep_(stall->to - time_);
+    if (due(FaultKind::vanish)) {
+        Decorator::stop();
+        return false;
+    }
+    if (due(FaultKind::freeze) && last_) {
+        hand = *last_;
+        return true;
+    }
+    Hand read;
+    if (!Decorator::read(now, read)) return false;
+    last_ = hand = read;
+    if (due(FaultKind::no_number)) hand.position = vec3(std::numeric_limits<float>::quiet_NaN());
+    if (const Fault* fault = due(FaultKind::jump)) hand.position += fault->jump;
+    return true;
+}
+
+bool Faulty::write(vec3 force) noexcept {
+    if (due(FaultKind::vanish) || due(FaultKind::refuse)) return false;
+    return Decorator::write(force);
+}
+
+}  // namespace palpate

@@ -1,0 +1,37 @@
+#include "palpate/touch/devices/playback.h"
+
+#include "palpate/base/error.h"
+
+#include <algorithm>
+
+namespace palpate {
+
+Playback::Playback(Log log) : log_(std::move(log)) {}
+
+void Playback::open() {
+    if (log_.ticks.empty()) throw Error("a log without a tick", log_.device, "record some");
+    later_.reset();
+    at_ = 0;
+}
+
+bool Playback::read(double now, Hand& hand) noexcept {
+    const auto& ticks = log_.ticks;
+    if (!later_) later_ = now - ticks.front().now;
+    const double then = now - *later_;
+    while (at_ + 1 < ticks.size() && ticks[at_ + 1].now <= then) ++at_;
+
+    const Tick& last = ticks[at_];
+    const bool over = at_ + 1 == ticks.size();
+    const Tick& next = over ? last : ticks[at_ + 1];
+    const double part = over ? 0 : (then - last.now) / (next.now - last.now);
+    hand = last.hand;
+    if (part > 0 && next.hand.placed == last.hand.placed)
+        hand.position = glm::mix(last.hand.position, next.hand.position, float(part));
+    // As old as the samples were then; after the last, as old as that one was.
+    const double sampled =
+        over ? last.hand.time + (then - last.now) : glm::mix(last.hand.time, next.hand.time, part);
+    hand.time = std::min(sampled + *later_, now);
+    return true;
+}
+
+}  // namespace palpate

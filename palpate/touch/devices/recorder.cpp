@@ -1,0 +1,32 @@
+#include "palpate/touch/devices/recorder.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace palpate {
+
+Recorder::Recorder(std::unique_ptr<Device> inner, double seconds, double rate)
+    : Decorator(std::move(inner)), most_(std::size_t(std::ceil(seconds * rate))) {
+    assert(seconds >= 0 && rate > 0 && std::isfinite(seconds * rate));
+    log_.device = spec().name;
+    log_.rate = rate;
+    log_.ticks.reserve(most_);
+}
+
+bool Recorder::read(double now, Hand& hand) noexcept {
+    noted_ = false;
+    if (!Decorator::read(now, hand)) return false;
+    noted_ = log_.ticks.size() < most_;
+    if (noted_)
+        log_.ticks.push_back({now, hand, vec3(0)});
+    else
+        ++missed_;
+    return true;
+}
+
+bool Recorder::write(vec3 force) noexcept {
+    if (noted_) log_.ticks.back().force = force;
+    return Decorator::write(force);
+}
+
+}  // namespace palpate

@@ -1,0 +1,25 @@
+#pragma once
+#include "palpate/scene/path.h"
+#include "palpate/touch/device.h"
+
+#include <optional>
+
+namespace palpate {
+
+/// A hand that follows a path whatever pushes it. The path counts from the first read.
+class Script final : public Device {
+ public:
+    explicit Script(Path path);
+
+    DeviceSpec spec() const override { return {.name = "script"}; }
+    void open() override;
+    bool read(double now, Hand& hand) noexcept override;
+    bool write(vec3) noexcept override { return true; }
+    void stop() noexcept override {}
+
+ private:
+    Path path_;
+    std::optional<double> start_;  // of the loop's clock
+};
+
+}  // namespace palpate

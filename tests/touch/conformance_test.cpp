@@ -1,0 +1,115 @@
+// All devices that come with Palpate, by themselves and decorated, and one whose driver is written outside
+// it.
+#include "tests/touch/conformance.h"
+
+#include "palpate/touch/devices/clutch.h"
+#include "palpate/touch/devices/faulty.h"
+#include "palpate/touch/devices/mouse.h"
+#include "palpate/touch/devices/playback.h"
+#include "palpate/touch/devices/recorder.h"
+#include "palpate/touch/devices/scaled.h"
+#include "palpate/touch/devices/script.h"
+#include "palpate/touch/devices/virtual_hand.h"
+
+namespace palpate {
+namespace {
+
+const Path path = {{0, vec3(0, 0.1f, 0)}, {0.5, vec3(0.02f, -0.01f, 0)}, {2, vec3(0.1f, 0.05f, -0.03f)}};
+
+// A driver as anybody may write it: a hand that goes round, and a motor that holds one number.
+class Carousel : public Device {
+ public:
+    DeviceSpec spec() const override { return {.name = "carousel", .peak_force = 2, .lasting_force = 1}; }
+    void open() override {}
+    bool read(double now, Hand& hand) noexcept override {
+        hand = {.position = vec3(std::cos(now), 0, std::sin(now)), .time = now};
+        return true;
+    }
+    bool write(vec3 force) noexcept override {
+        x_ = force.x, y_ = force.y, z_ = force.z;
+        return true;
+    }
+    void stop() noexcept override { x_ = y_ = z_ = 0; }
+
+    vec3 force() const { return vec3(float(x_), float(y_), float(z_)); }
+
+ private:
+    std::atomic<float> x_ = 0, y_ = 0, z_ = 0;  // N
+};
+
+// A hand, and what `around` puts around it.
+template <class Around>
+std::function<Subject()> hand_in(Around around, VirtualHandSettings settings = {}) {
+    return [=] {
+        auto hand = std::make_unique<VirtualHand>(path, settings);
+        const VirtualHand* inside = hand.get();
+        return Subject{around(std::move(hand)), [inside] { return inside->force(); }};
+    };
+}
+
+template <class D, class... With>
+auto in_a(With... with) {
+    return [=](std::unique_ptr<Device> inner) -> std::unique_ptr<Device> {
+        return std::make_unique<D>(std::move(inner), with...);
+    };
+}
+
+template <class D, class... With>
+std::function<Subject()> simple(With... with) {
+    return [=] { return Subject{std::make_unique<D>(with...)}; };
+}
+
+Log some_log() {
+    Log log{.device = "a log", .rate = 500, .ticks = {}};
+    for (int i = 0; i < 700; ++i)
+        log.ticks.push_back(
+            {2 + i * 2e-3, {vec3(float(i), 0, 0), 1.999 + i * 2e-3, 0, unsigned(i / 100)}, vec3(0)});
+    return log;
+}
+
+const std::vector<PointerEvent> moves = {
+    {0.01, vec2(100, 20)}, {0.02, vec2(300, 40), 1}, {1.5, vec2(310, 700), 0, 2}};
+
+const auto alone = [](std::unique_ptr<Device> device) { return device; };
+const auto no_sleep = [](double) {};
+
+Fault fault(FaultKind kind, double from, double to) { return {.kind = kind, .from = from, .to = to}; }
+
+std::unique_ptr<Device> wrapped_often(std::unique_ptr<Device> device) {
+    return in_a<Recorder>(3.0)(
+        in_a<Clutch>(1u)(in_a<Scaled>(Scale{.motion = 3})(in_a<Recorder>(1.0)(std::move(device)))));
+}
+
+const std::vector<Specimen> all = {
+    {"Carousel",
+     [] {
+         auto device = std::make_unique<Carousel>();
+         const Carousel* inside = device.get();
+         return Subject{std::move(device), [inside] { return inside->force(); }};
+     }},
+    {"Hand", hand_in(alone)},
+    {"QuantisedLateHand", hand_in(alone, {.resolution = 2.5e-5, .delay = 0.0025})},
+    {"Script", simple<Script>(path)},
+    {"Mouse", simple<Mouse>(MouseSettings{})},
+    {"ReplayedMouse", simple<Mouse>(MouseSettings{}, moves)},
+    {"Playback", simple<Playback>(some_log())},
+    {"Scaled", hand_in(in_a<Scaled>(Scale{.about = vec3(1, 2, 3), .motion = 0.1f}))},
+    {"Clutch", hand_in(in_a<Clutch>())},
+    {"Recorder", hand_in(in_a<Recorder>(1.0))},
+    {"FaultyWithoutFaults", hand_in(in_a<Faulty>(std::vector<Fault>{}, no_sleep))},
+    {"FrozenRefusingStalling",
+     hand_in(in_a<Faulty>(std::vector{fault(FaultKind::freeze, 0.5, 0.7), fault(FaultKind::refuse, 0.6, 0.9),
+                                      fault(FaultKind::stall, 1, 1.2), fault(FaultKind::jump, 1.5, 2)},
+                          no_sleep))},
+    {"ThereAndGone",
+     hand_in(in_a<Faulty>(std::vector{fault(FaultKind::vanish, 0, 0.05), fault(FaultKind::vanish, 1, 2)},
+                          no_sleep)),
+     false},
+    {"AllAroundTheHand", hand_in(wrapped_often)},
+};
+
+}  // namespace
+
+INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(all), specimen_name);
+
+}  // namespace palpate

@@ -1,0 +1,649 @@
+// Each device against what it must do in closed form; decorators around it. conformance_test.cpp has what is
+// common to all.
+#include "palpate/base/error.h"
+#include "palpate/touch/devices/clutch.h"
+#include "palpate/touch/devices/faulty.h"
+#include "palpate/touch/devices/mouse.h"
+#include "palpate/touch/devices/playback.h"
+#include "palpate/touch/devices/recorder.h"
+#include "palpate/touch/devices/scaled.h"
+#include "palpate/touch/devices/script.h"
+#include "palpate/touch/devices/virtual_hand.h"
+#include "palpate/touch/make_device.h"
+#include "tests/scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <complex>
+#include <random>
+#include <thread>
+
+namespace palpate {
+namespace {
+
+using Complex = std::complex<long double>;
+
+// A second, independent solution of x'' + c x' + k x = 0: by the roots of its polynomial, in higher
+// precision. Not for critical damping.
+double by_roots(double x, double v, double k, double c, double t) {
+    const Complex root = std::sqrt(Complex(c * c / 4.0L - k)), a = -c / 2.0L + root, b = -c / 2.0L - root;
+    const Complex of_b = (Complex(v) - a * (long double)x) / (b - a), of_a = (long double)x - of_b;
+    return double((of_a * std::exp(a * (long double)t) + of_b * std::exp(b * (long double)t)).real());
+}
+
+TEST(DampedSpring, AgreesWithItsRoots) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> part(0, 1), sign(-1, 1);
+    for (int i = 0; i < 2000; ++i) {
+        const double k = std::pow(10, 6 * part(random)), c = std::pow(10, 4 * part(random) - 1);
+        const double t = std::pow(10, 4 * part(random) - 4), x = sign(random), v = 10 * sign(random);
+        const Swing swing = after({dvec3(x, 0, -2 * x), dvec3(v, 0, -2 * v)}, {k, c}, t);
+        const double truth = by_roots(x, v, k, c, t), size = std::abs(x) + std::abs(v) / std::sqrt(k);
+        EXPECT_LE(std::abs(swing.offset.x - truth), 1e-11 * size) << k << " " << c << " " << t;
+        EXPECT_LE(std::abs(swing.offset.z + 2 * truth), 1e-11 * 2 * size);
+        EXPECT_EQ(swing.offset.y, 0);
+    }
+}
+
+TEST(DampedSpring, CriticalDampingHasItsOwnSolution) {
+    for (double nearly : {1.0, 1 - 1e-15, 1 + 1e-15, 1 + 1e-12})
+        for (double t : {0.0, 1e-3, 0.02, 0.5}) {
+            const double rate = 50, x = 0.3, v = -4;
+            const Swing swing = after({dvec3(x), dvec3(v)}, {rate * rate, 2 * rate * nearly}, t);
+            const double decay = std::exp(-rate * t), slope = v + rate * x;
+            EXPECT_LE(std::abs(swing.offset.x - decay * (x + slope * t)), 1e-11);
+            EXPECT_LE(std::abs(swing.velocity.x - decay * (v - rate * slope * t)), 1e-9);
+        }
+}
+
+TEST(DampedSpring, StepsAddUpHoweverStiffItIs) {
+    for (const DampedSpring spring :
+         {DampedSpring{1e12, 1}, DampedSpring{1e12, 1e9}, DampedSpring{1, 1e6}, DampedSpring{4, 0}}) {
+        const Swing start{dvec3(1, 2, 3), dvec3(-3, 1, 0)};
+        Swing many = start;
+        for (int i = 0; i < 1000; ++i) many = after(many, spring, 1e-3);
+        const Swing one = after(start, spring, 1);
+        EXPECT_LE(length(many.offset - one.offset), 1e-9);
+        EXPECT_LE(length(after(start, spring, 1e9).offset), 4.0);  // and nothing overflows
+    }
+}
+
+constexpr VirtualHandSettings person{.mass = 0.2, .damping = 2, .stiffness = 300};
+constexpr double omega2 = 300 / 0.2, braking = 2 / 0.2;
+
+// A hand after `seconds` of a loop that writes force(its time) each tick; `seconds` is a whole number of its
+// ticks.
+template <class Force>
+void run(VirtualHand& hand, double rate, double seconds, Force force) {
+    hand.open();
+    Hand ignored;
+    const int ticks = int(std::lround(seconds * rate));
+    for (int i = 0; i < ticks; ++i) {
+        EXPECT_TRUE(hand.read(i / rate, ignored));
+        EXPECT_TRUE(hand.write(force(i / rate)));
+    }
+    EXPECT_TRUE(hand.read(ticks / rate, ignored));
+}
+
+class VirtualHandAt : public testing::TestWithParam<double> {};
+
+TEST_P(VirtualHandAt, SwingsAsItsEquationDoes) {
+    VirtualHand hand({{0, vec3(0.1f, 0, 0)}}, person);
+    const vec3 pull(-2, 1, 0.5f);
+    for (double t : {0.0, 0.004, 0.1, 0.5, 1.6}) {
+        // Pulled aside for 0.2 s, then let go: free damped oscillation.
+        run(hand, GetParam(), 0.2 + t, [&](double now) { return now < 0.2 - 1e-9 ? pull : vec3(0); });
+        const double part = 1 / 300.0, aside = part - by_roots(part, 0, omega2, braking, 0.2);
+        const double later = 1e-7, speed = (-by_roots(part, 0, omega2, braking, 0.2 + later) +
+                                            by_roots(part, 0, omega2, braking, 0.2 - later)) /
+                                           (2 * later);
+        const double swing = by_roots(aside, speed, omega2, braking, t);
+        const dvec3 truth = dvec3(0.1f, 0, 0) + dvec3(pull) * swing;
+        EXPECT_LE(length(hand.position() - truth), 1e-9) << t;
+    }
+}
+
+TEST_P(VirtualHandAt, GivesWayToAForceByItsStiffness) {
+    VirtualHand hand({{0, vec3(0, 0.5f, 0)}}, person);
+    run(hand, GetParam(), 10, [](double) { return vec3(3, -1.5f, 0); });
+    EXPECT_LE(length(hand.position() - dvec3(0.01, 0.5 - 0.005, 0)), 1e-9);
+    EXPECT_LE(length(hand.velocity()), 1e-9);
+}
+
+TEST_P(VirtualHandAt, FollowsItsPlanAroundItsBends) {
+    // At each bend the plan's speed changes, which starts a swing of its own. Bends lie between ticks.
+    const Path plan = {{0.1003, vec3(0)}, {0.3001, vec3(0.1f, 0, 0)}, {0.5507, vec3(0.1f, 0.2f, 0)}};
+    VirtualHand hand(plan, person);
+    for (double t : {0.1, 0.24, 0.4, 1.2}) {
+        run(hand, GetParam(), t, [](double) { return vec3(0); });
+        dvec3 truth(position(plan, 0));
+        dvec3 speed(0);
+        for (std::size_t i = 0; i < plan.size(); ++i) {
+            const double since = t - plan[i].time;
+            if (since <= 0) break;
+            const dvec3 before = speed;
+            speed = i + 1 < plan.size() ? (dvec3(plan[i + 1].position) - dvec3(plan[i].position)) /
+                                              (plan[i + 1].time - plan[i].time)
+                                        : dvec3(0);
+            truth += (speed - before) * (since + by_roots(0, -1, omega2, braking, since));
+        }
+        EXPECT_LE(length(hand.position() - truth), 1e-9) << t;
+    }
+}
+
+TEST_P(VirtualHandAt, ADelayedForceComesThatMuchLater) {
+    VirtualHandSettings late = person;
+    late.delay = 0.0137;  // no whole number of ticks
+    VirtualHand hand({{0, vec3(0)}}, late);
+    for (double t : {0.004, 0.012, 0.016, 0.2}) {
+        run(hand, GetParam(), t, [](double) { return vec3(0, 0, 3); });
+        const double since = std::max(0.0, t - late.delay);
+        EXPECT_LE(std::abs(hand.position().z - 0.01 * (1 - by_roots(1, 0, omega2, braking, since))), 1e-9)
+            << t;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, VirtualHandAt, testing::Values(250.0, 1000.0, 4000.0),
+                         [](const auto& rate) { return std::to_string(int(rate.param)) + "Hz"; });
+
+TEST(VirtualHand, ADelayOfAWholeTickIsOneTick) {
+    VirtualHandSettings late = person;
+    late.delay = 2e-3;
+    VirtualHand hand({{0, vec3(0)}}, late), other({{0, vec3(0)}}, person);
+    hand.open();
+    other.open();
+    Hand ignored;
+    std::vector<vec3> written;
+    for (int i = 0; i < 500; ++i) {
+        hand.read(i * 1e-3, ignored);
+        other.read(i * 1e-3, ignored);
+        EXPECT_LE(length(hand.position() - other.position()), 1e-12);
+        written.push_back(vec3(std::sin(i), 0, i % 5));
+        hand.write(written.back());
+        other.write(i >= 2 ? written[i - 2] : vec3(0));
+    }
+}
+
+TEST(VirtualHand, IsReadByAnEncoder) {
+    VirtualHandSettings coarse = person;
+    coarse.resolution = 1e-3;
+    VirtualHand hand({{0, vec3(-0.05f, 0.02f, 0)}, {1, vec3(0.06f, 0, 0)}}, coarse),
+        whole({{0, vec3(-0.05f, 0.02f, 0)}, {1, vec3(0.06f, 0, 0)}}, person);
+    hand.open();
+    whole.open();
+    Hand read, exact;
+    for (int i = 0; i < 1500; ++i) {
+        hand.read(i * 1e-3, read);
+        whole.read(i * 1e-3, exact);
+        EXPECT_EQ(hand.position(), whole.position());  // only what is read is rounded
+        for (int axis = 0; axis < 3; ++axis) {
+            const double steps = read.position[axis] / 1e-3;
+            EXPECT_LE(std::abs(steps - std::round(steps)), 1e-5);
+            EXPECT_LE(std::abs(read.position[axis] - exact.position[axis]), 0.5e-3 + 1e-8);
+        }
+    }
+}
+
+TEST(VirtualHand, AStopAlsoTakesForcesThatAreOnTheirWay) {
+    VirtualHandSettings late = person;
+    late.delay = 0.05;
+    VirtualHand hand({{0, vec3(0)}}, late);
+    hand.open();
+    Hand ignored;
+    for (int i = 0; i < 200; ++i) {
+        hand.read(i * 1e-3, ignored);
+        if (i < 30) hand.write(vec3(5, 0, 0));
+        if (i == 30) hand.stop();
+        EXPECT_EQ(hand.position(), dvec3(0));
+    }
+    hand.write(vec3(5, 0, 0));
+    hand.read(0.3, ignored);
+    EXPECT_GT(hand.position().x, 1e-3);
+}
+
+TEST(VirtualHand, WhatIsNoForceDoesNotPush) {
+    VirtualHand hand({{0, vec3(0)}}, person);
+    hand.open();
+    Hand read;
+    hand.read(0, read);
+    hand.write(vec3(NAN, 1, 0));
+    hand.read(1, read);
+    EXPECT_EQ(read.position, vec3(0));
+}
+
+TEST(VirtualHand, WhatCannotBeIsSaid) {
+    auto complaint = [](Path plan, VirtualHandSettings settings) {
+        try {
+            VirtualHand(std::move(plan), settings).open();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const Path plan = {{0, vec3(0)}};
+    EXPECT_EQ(complaint(plan, {}), "");
+    EXPECT_NE(complaint({}, {}).find("no plan of motion in virtual hand; "), std::string::npos);
+    for (const VirtualHandSettings& wrong :
+         {VirtualHandSettings{.mass = 0}, VirtualHandSettings{.damping = -1},
+          VirtualHandSettings{.stiffness = NAN}, VirtualHandSettings{.resolution = -1},
+          VirtualHandSettings{.delay = 2}, VirtualHandSettings{.delay = NAN}})
+        EXPECT_NE(complaint(plan, wrong).find("virtual hand; "), std::string::npos);
+}
+
+TEST(Script, FollowsItsPathFromTheFirstRead) {
+    const Path path = {{0, vec3(0)}, {1, vec3(0, 2, 0)}};
+    Script script(path);
+    script.open();
+    Hand hand;
+    for (double t : {0.0, 0.25, 0.5, 1.0, 7.0}) {
+        EXPECT_TRUE(script.read(64 + t, hand));
+        EXPECT_EQ(hand.position, position(path, t));
+        EXPECT_EQ(hand.time, 64 + t);
+        EXPECT_TRUE(script.write(vec3(100)));
+    }
+    EXPECT_THROW(Script({}).open(), Error);
+}
+
+// ---- the mouse ----
+
+MouseSettings before_the_origin() {
+    MouseSettings settings;
+    settings.camera = {.eye = vec3(0, 0, 1), .look_at = vec3(0), .up = vec3(0, 1, 0), .angle = 90};
+    settings.size = ivec2(200, 100);
+    return settings;
+}
+
+// Where the hand comes to rest.
+vec3 settled(Mouse& mouse, double& now) {
+    Hand hand;
+    mouse.read(now, hand);
+    now += 10;
+    mouse.read(now, hand);
+    return hand.position;
+}
+
+TEST(Mouse, IsUnderThePointerAsDeepAsTheCameraLooks) {
+    MouseSettings settings = before_the_origin();
+    Mouse mouse(settings);
+    mouse.open();
+    double now = 5;
+    EXPECT_LE(length(settled(mouse, now)), 1e-7f);  // the middle, before any event
+    mouse.point({.position = vec2(100, 0)});
+    EXPECT_LE(length(settled(mouse, now) - vec3(0, 1, 0)), 1e-6f);  // 45 degrees up
+    mouse.point({.position = vec2(200, 100)});
+    EXPECT_LE(length(settled(mouse, now) - vec3(2, -1, 0)), 1e-6f);
+    // The wheel goes along the line of sight: what lies on it stays under the pointer.
+    mouse.point({.position = vec2(200, 100), .wheel = 20});
+    EXPECT_LE(length(settled(mouse, now) - vec3(2.2f, -1.1f, -0.1f)), 1e-6f);
+    mouse.point({.position = vec2(200, 100), .wheel = -1e6});  // never behind the eye
+    EXPECT_LE(length(settled(mouse, now) - vec3(0.02f, -0.01f, 0.99f)), 1e-6f);
+    settings.camera.orthographic = true;
+    mouse.look(settings.camera, settings.size);
+    mouse.point({.position = vec2(200, 100), .wheel = 20});
+    EXPECT_LE(length(settled(mouse, now) - vec3(2, -1, -0.1f)), 1e-6f);
+    // Straight down, where up says nothing, there still is a right and an up.
+    settings.camera = {.eye = vec3(0, 1, 0), .look_at = vec3(0), .angle = 90};
+    mouse.look(settings.camera, settings.size);
+    mouse.point({.position = vec2(100, 0)});
+    const vec3 up = settled(mouse, now);
+    EXPECT_LE(std::abs(up.y), 1e-6f);
+    EXPECT_LE(std::abs(length(up) - 1), 1e-6f);
+    // And where there is nothing to see at all, some place.
+    settings.camera = {.eye = vec3(2), .look_at = vec3(2), .up = vec3(0), .angle = NAN};
+    mouse.look(settings.camera, ivec2(0));
+    const vec3 somewhere = settled(mouse, now);
+    EXPECT_TRUE(std::isfinite(dot(somewhere, somewhere)));
+}
+
+TEST(Mouse, IsFedFromAnotherThread) {
+    Mouse mouse(before_the_origin());
+    mouse.open();
+    std::atomic<bool> over = false;
+    std::thread window([&] {
+        for (int i = 0; i < 20'000; ++i) {
+            // Each event is sound by itself: its button says where it is.
+            const unsigned side = unsigned(i % 2);
+            mouse.point({.position = vec2(side ? 150 : 50, 50), .buttons = side});
+            if (i % 1000 == 0) mouse.look(before_the_origin().camera, ivec2(200, 100));
+        }
+        over = true;
+    });
+    Hand hand;
+    double now = 0;
+    unsigned placed = 0;
+    while (!over) {
+        ASSERT_TRUE(mouse.read(now += 1, hand));  // each time it has a second to come to rest
+        ASSERT_GE(hand.placed, placed);
+        ASSERT_LE(length(hand.position), 1.0f);
+        placed = hand.placed;
+    }
+    window.join();
+    mouse.read(now += 1, hand);
+    mouse.read(now += 1, hand);
+    EXPECT_EQ(hand.buttons, 1u);
+    EXPECT_LE(length(hand.position - vec3(1, 0, 0)), 1e-6f);
+}
+
+TEST(Mouse, GoesToItsTargetCriticallyDamped) {
+    MouseSettings settings = before_the_origin();
+    const std::vector<PointerEvent> events = {
+        {0.1, vec2(100, 50)}, {0.2004, vec2(100, 25)}, {0.2173, vec2(100, 0), 5}};
+    for (double rate : {250.0, 1000.0, 4000.0}) {
+        Mouse mouse(settings, events);
+        mouse.open();
+        Hand hand;
+        for (int i = 0; i <= int(0.3 * rate); ++i) {
+            const double t = i / rate;
+            mouse.read(64 + t, hand);
+            double truth = 0;  // each event is a step of half a metre, answered by 1 - exp(-u) (1 + u)
+            for (double event : {0.2004, 0.2173})
+                if (const double u = (t - event) / settings.smoothing; u > 0)
+                    truth += 0.5 * (1 - std::exp(-u) * (1 + u));
+            EXPECT_LE(length(dvec3(hand.position) - dvec3(0, truth, 0)), 1e-6) << t;
+            EXPECT_EQ(hand.buttons, t < 0.2173 - 1e-9 ? 0u : 5u);
+            EXPECT_EQ(hand.placed, t < 0.1 - 1e-9 ? 0u : 1u);  // by its first event
+        }
+    }
+}
+
+TEST(Mouse, AnotherViewPlacesItAnew) {
+    MouseSettings settings = before_the_origin();
+    Mouse mouse(settings);
+    mouse.open();
+    Hand hand;
+    mouse.read(0, hand);
+    mouse.point({.position = vec2(100, 25)});
+    mouse.read(0.001, hand);
+    const unsigned placed = hand.placed;
+    mouse.read(0.002, hand);
+    EXPECT_EQ(hand.placed, placed);
+    settings.camera.look_at = vec3(0, 0, -1);
+    mouse.look(settings.camera, settings.size);
+    mouse.read(0.003, hand);
+    EXPECT_EQ(hand.placed, placed + 1);
+    EXPECT_LE(length(hand.position - vec3(0, 1, -1)), 1e-6f);  // at once
+    mouse.point({.position = vec2(100, 20)});
+    mouse.read(0.004, hand);
+    EXPECT_EQ(hand.placed, placed + 1);
+}
+
+// ---- decorators ----
+
+std::unique_ptr<Device> straight() {  // 0.1 m/s along x
+    return std::make_unique<Script>(Path{{0, vec3(0)}, {100, vec3(10, 0, 0)}});
+}
+
+// Remembers the last force, and says what it was told to.
+class Puppet : public Device {
+ public:
+    DeviceSpec spec() const override {
+        return {.name = "puppet", .peak_force = 3, .lasting_force = 1, .stiffness = 800};
+    }
+    void open() override {}
+    bool read(double now, Hand& hand) noexcept override {
+        hand = says;
+        hand.time = now;
+        return true;
+    }
+    bool write(vec3 f) noexcept override {
+        force = f;
+        return true;
+    }
+    void stop() noexcept override { force = vec3(0); }
+
+    Hand says;
+    vec3 force = vec3(0);
+};
+
+TEST(Scaled, KeepsAWallsStiffnessUnlessToldOtherwise) {
+    auto inner = std::make_unique<Puppet>();
+    Puppet& puppet = *inner;
+    Scaled scaled(std::move(inner), {.about = vec3(1, 0, 0), .motion = 0.1f});
+    scaled.open();
+    Hand hand;
+    puppet.says.position = vec3(1.5f, 2, 0);
+    scaled.read(0, hand);
+    EXPECT_LE(length(hand.position - vec3(1.05f, 0.2f, 0)), 1e-6f);
+    scaled.write(vec3(0, 0.2f, 0));
+    EXPECT_LE(length(puppet.force - vec3(0, 2, 0)), 1e-6f);
+    EXPECT_FLOAT_EQ(scaled.spec().stiffness, 800);
+    EXPECT_FLOAT_EQ(scaled.spec().peak_force, 0.3f);
+    EXPECT_FLOAT_EQ(scaled.spec().lasting_force, 0.1f);
+
+    EXPECT_EQ(hand.placed, 0u);
+    scaled.set({.about = vec3(0), .motion = 2, .forces = 3});
+    scaled.read(1, hand);
+    EXPECT_EQ(hand.placed, 1u);
+    EXPECT_EQ(hand.position, vec3(3, 4, 0));
+    scaled.write(vec3(0, 0, 0.5f));
+    EXPECT_EQ(puppet.force, vec3(0, 0, 1.5f));
+    scaled.write(vec3(30, 0, 40));  // more than its motors have
+    EXPECT_LE(length(puppet.force - vec3(1.8f, 0, 2.4f)), 1e-6f);
+    scaled.read(2, hand);
+    EXPECT_EQ(hand.placed, 1u);
+    EXPECT_THROW(Scaled(straight(), {.motion = 0}).open(), Error);
+    EXPECT_THROW(Scaled(straight(), {.motion = 1, .forces = -1}).open(), Error);
+}
+
+TEST(Clutch, HoldsThePositionAndGoesOnFromThere) {
+    auto inner = std::make_unique<Puppet>();
+    Puppet& puppet = *inner;
+    Clutch clutch(std::move(inner), 2);
+    clutch.open();
+    Hand hand;
+    auto at = [&](float x) {
+        puppet.says.position = vec3(x, 0, 0);
+        clutch.read(x, hand);
+        clutch.write(vec3(1, 0, 0));
+        return hand.position.x;
+    };
+    EXPECT_EQ(at(1), 1);
+    clutch.hold(true);
+    EXPECT_EQ(at(2), 1);
+    EXPECT_EQ(puppet.force, vec3(0));
+    EXPECT_EQ(hand.time, 2);  // it is held, not old
+    EXPECT_EQ(at(5), 1);
+    EXPECT_EQ(hand.placed, 0u);
+    clutch.hold(false);
+    EXPECT_EQ(at(5.5f), 1);
+    EXPECT_EQ(hand.placed, 1u);
+    EXPECT_EQ(puppet.force, vec3(1, 0, 0));
+    EXPECT_EQ(at(6), 1.5f);
+    puppet.says.buttons = 3;
+    EXPECT_EQ(at(9), 1.5f);
+    EXPECT_EQ(hand.buttons, 3u);
+    puppet.says.buttons = 1;
+    at(NAN);
+    EXPECT_TRUE(std::isnan(hand.position.x));
+    EXPECT_EQ(at(10), 1.5f);
+    EXPECT_EQ(at(11), 2.5f);
+    EXPECT_EQ(hand.placed, 2u);
+}
+
+TEST(Recorder, WhatItRecordsPlaysBackToTheBit) {
+    std::vector<Fault> faults = {{.kind = FaultKind::jump, .from = 0.3, .to = 0.4},
+                                 {.kind = FaultKind::freeze, .from = 0.6, .to = 0.7},
+                                 {.kind = FaultKind::vanish, .from = 0.8, .to = 0.9}};
+    auto hand = std::make_unique<VirtualHand>(Path{{0, vec3(0.1f)}, {0.5, vec3(0.3f, 0, 0)}});
+    Recorder recorder(std::make_unique<Faulty>(std::move(hand), faults, [](double) {}), 2);
+    recorder.open();
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uneven(0, 2e-3);
+    struct Seen {
+        double now;
+        bool there;
+        Hand hand;
+        vec3 force;
+    };
+    std::vector<Seen> seen;
+    double now = 77.7;
+    for (int i = 0; i < 1200; ++i, now += uneven(random)) {
+        Hand read;
+        const bool there = recorder.read(now, read);
+        const vec3 force(float(uneven(random)), 0, 1);
+        recorder.write(force);
+        seen.push_back({now, there, read, force});
+    }
+    EXPECT_EQ(recorder.missed(), 0u);
+    const Scratch folder;
+    write_log(folder / "log.csv", recorder.log());
+    Log log = read_log(folder / "log.csv");
+    EXPECT_EQ(log.device, "virtual hand");
+
+    std::size_t line = 0;
+    auto playback = make_device("playback", {.log = folder / "log.csv"});
+    playback->open();
+    for (const Seen& s : seen) {
+        Hand played;
+        ASSERT_TRUE(playback->read(s.now, played));
+        if (!s.there) continue;
+        EXPECT_EQ(played.position, s.hand.position);
+        EXPECT_EQ(played.time, s.hand.time);
+        EXPECT_EQ(log.ticks.at(line++).force, s.force);
+    }
+    EXPECT_EQ(line, log.ticks.size());
+    EXPECT_LT(line, seen.size());
+}
+
+TEST(Recorder, SaysWhenItIsFull) {
+    Recorder recorder(straight(), 0.1);
+    recorder.open();
+    Hand hand;
+    for (int i = 0; i < 150; ++i) {
+        EXPECT_TRUE(recorder.read(i * 1e-3, hand));
+        EXPECT_TRUE(recorder.write(vec3(float(i), 0, 0)));
+    }
+    EXPECT_EQ(recorder.missed(), 50u);
+    ASSERT_EQ(recorder.log().ticks.size(), 100u);
+    EXPECT_EQ(recorder.log().ticks.back().force.x, 99);
+}
+
+TEST(Playback, GoesStraightBetweenTicksButOverNoJump) {
+    Log log;
+    log.ticks = {{10, {vec3(0), 10, 0, 0}, vec3(0)},
+                 {11, {vec3(4, 0, 0), 10.5, 1, 0}, vec3(0)},
+                 {12, {vec3(9, 0, 0), 12, 0, 1}, vec3(0)}};
+    Playback playback(log);
+    playback.open();
+    Hand hand;
+    auto at = [&](double t) {
+        playback.read(100 + t, hand);
+        return hand.position.x;
+    };
+    EXPECT_EQ(at(0), 0);
+    EXPECT_EQ(at(0.25), 1);
+    EXPECT_EQ(hand.time, 100.125);  // as its samples grew old
+    EXPECT_EQ(at(1), 4);
+    EXPECT_EQ(hand.buttons, 1u);
+    EXPECT_EQ(at(1.75), 4);
+    EXPECT_EQ(at(2), 9);
+    EXPECT_EQ(at(50), 9);
+    EXPECT_EQ(hand.time, 150);
+    EXPECT_THROW(Playback(Log{}).open(), Error);
+}
+
+TEST(Faulty, FailsOnSchedule) {
+    double now = 1000;
+    std::vector<Fault> faults;
+    double from = 0.1;
+    for (FaultKind kind : {FaultKind::no_number, FaultKind::jump, FaultKind::vanish, FaultKind::stall,
+                           FaultKind::freeze, FaultKind::refuse}) {
+        faults.push_back({.kind = kind, .from = from, .to = from + 0.05});
+        from += 0.1;
+    }
+    auto inner = std::make_unique<VirtualHand>(Path{{0, vec3(0)}, {100, vec3(10, 0, 0)}});
+    const VirtualHand& person_inside = *inner;
+    Faulty faulty(std::move(inner), faults, [&](double seconds) { now += seconds; });
+    faulty.open();
+    Hand hand;
+    double last = 0;
+    for (int i = 0; now < 1000.75; ++i) {
+        const double t = now - 1000, asked = now;
+        auto during = [&](double begin) { return t >= begin && t < begin + 0.05; };
+        const Hand before = hand;
+        const bool there = faulty.read(now, hand);
+        const bool written = faulty.write(vec3(0, 1, 0));
+        EXPECT_EQ(there, !during(0.3)) << t;
+        EXPECT_EQ(written, !during(0.3) && !during(0.6)) << t;
+        const dvec3 true_place = person_inside.position();
+        if (during(0.1)) {
+            EXPECT_TRUE(std::isnan(hand.position.x));
+        } else if (during(0.2)) {
+            EXPECT_LE(length(dvec3(hand.position) - true_place - dvec3(0.05, 0, 0)), 1e-6);
+            EXPECT_EQ(hand.placed, 0u);
+        } else if (during(0.3)) {
+            EXPECT_EQ(hand.position, before.position);
+            EXPECT_EQ(person_inside.force(), vec3(0));
+        } else if (during(0.5)) {
+            EXPECT_EQ(hand.time, before.time);
+            EXPECT_EQ(hand.position, before.position);
+        } else {
+            EXPECT_EQ(hand.position, vec3(true_place));
+            EXPECT_EQ(hand.time, asked);
+        }
+        if (during(0.4)) EXPECT_NEAR(now, 1000.45, 1e-9);  // it did not come back before
+        EXPECT_GE(hand.time, last);
+        last = hand.time;
+        now += 1e-3;
+    }
+}
+
+TEST(Decorators, Compose) {
+    auto inner = std::make_unique<Puppet>();
+    Puppet& puppet = *inner;
+    auto scaled = std::make_unique<Scaled>(std::move(inner), Scale{.motion = 2});
+    Scaled& scale = *scaled;
+    auto clutched = std::make_unique<Clutch>(std::move(scaled));
+    Clutch& clutch = *clutched;
+    Recorder all(std::move(clutched), 1);
+    all.open();
+    Hand hand;
+    puppet.says.position = vec3(1, 0, 0);
+    puppet.says.placed = 7;
+    all.read(0, hand);
+    EXPECT_EQ(hand.position.x, 2);
+    clutch.hold(true);
+    puppet.says.position = vec3(5, 0, 0);
+    all.read(1, hand);
+    clutch.hold(false);
+    scale.set({.motion = 4});
+    all.read(2, hand);
+    EXPECT_EQ(hand.position.x, 2);
+    EXPECT_EQ(hand.placed, 9u);  // its own, the clutch's and the scale's
+    all.write(vec3(2, 0, 0));
+    EXPECT_EQ(puppet.force.x, 0.5f);
+    EXPECT_EQ(all.log().ticks.back().force.x, 2);
+    EXPECT_EQ(all.spec().name, "puppet");
+    all.stop();
+    EXPECT_EQ(puppet.force, vec3(0));
+}
+
+TEST(MakeDevice, KnowsThemByName) {
+    const Scratch folder;
+    Log log;
+    log.ticks.push_back({});
+    write_log(folder / "log.csv", log);
+    const DeviceSettings settings{.path = {{0, vec3(0)}}, .log = folder / "log.csv"};
+    for (const auto& named : names(DeviceKind{})) {
+        auto device = make_device(named.name, settings);
+        ASSERT_TRUE(device) << named.name;
+        device->open();
+        Hand hand;
+        EXPECT_TRUE(device->read(0, hand)) << named.name;
+    }
+    try {
+        make_device("mose");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(),
+                     "no device \"mose\" in the list of devices; did you mean \"mouse\"? There are hand, "
+                     "script, mouse, playback");
+    }
+    EXPECT_THROW(make_device("playback", {.log = "/nowhere"}), Error);
+    EXPECT_THROW(make_device("script")->open(), Error);
+}
+
+}  // namespace
+}  // namespace palpate
