@@ -47,7 +47,9 @@ nlohmann::json described(const Timings& timings) {
                          {"links_each", timings.cases[c].links},
                          {"bytes_moved_each", timings.cases[c].bytes},
                          {"bytes_kept_each", timings.cases[c].memory}});
-    return {{"limits", limits}, {"cases", cases}, {"driver", timings.driver}};
+    nlohmann::json figures = nlohmann::json::object();
+    for (const auto& figure : timings.figures) figures[figure.name] = figure.value;
+    return {{"limits", limits}, {"cases", cases}, {"figures", figures}, {"driver", timings.driver}};
 }
 
 void run_benchmarks(const Arguments& arguments) {
@@ -58,6 +60,8 @@ void run_benchmarks(const Arguments& arguments) {
         "Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
         processor(), cores, cores == 1 ? "" : "s", cpu_instructions(), arguments.rounds);
     nlohmann::json all;
+    std::vector<Panel> panels;
+    std::string title;
     for (const Benchmark& benchmark : benchmarks()) {
         const auto& wanted = arguments.names;
         const bool named = std::find(wanted.begin(), wanted.end(), benchmark.name) != wanted.end();
@@ -66,9 +70,11 @@ void run_benchmarks(const Arguments& arguments) {
         fmt::print("\n### {}: {}\n\n{}", benchmark.name, benchmark.about, benchmark.text(timings));
         std::fflush(stdout);
         all[benchmark.name] = described(timings);
-        if (benchmark.curves && !arguments.plot.empty())
-            write_plot(benchmark.name + ": " + benchmark.about, benchmark.curves(timings), arguments.plot);
+        if (!benchmark.curves) continue;
+        title += (title.empty() ? "" : "; ") + benchmark.name + ": " + benchmark.about;
+        for (Panel& panel : benchmark.curves(timings)) panels.push_back(std::move(panel));
     }
+    if (!arguments.plot.empty()) write_plot(title, panels, arguments.plot);
     if (!arguments.json.empty()) {
         all["processor"] = processor();
         all["cores"] = cores;
@@ -86,12 +92,12 @@ void add_bench(CLI::App& app) {
     for (const Benchmark& benchmark : benchmarks()) names.push_back(benchmark.name);
     command
         ->add_option("names", arguments->names,
-                     "which: lattice, cloth, embed, which run if none is named; pipeline, heart")
+                     "which: lattice, cloth, embed, which run if none is named; pipeline, heart, touch")
         ->check(CLI::IsMember(names));
     command->add_option("--rounds", arguments->rounds, "how often each case runs, by turns")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command->add_option("--json", arguments->json, "write the figures, JSON");
-    command->add_option("--plot", arguments->plot, "write the curves of pipeline, SVG");
+    command->add_option("--plot", arguments->plot, "write the curves of pipeline or touch, SVG");
     command->callback([arguments] { run_benchmarks(*arguments); });
 }

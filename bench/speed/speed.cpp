@@ -138,7 +138,9 @@ const std::vector<Benchmark>& benchmarks() {
               lattice_cases),
         plain("cloth", "steps of cloths", "node-steps", cloth_cases),
         plain("embed", "a surface of 160,000 vertices carried by its nodes", "vertices", embed_cases),
-        pipeline(), heart()};
+        pipeline(),
+        heart(),
+        touch()};
     return all;
 }
 

@@ -44,6 +44,12 @@ struct Timings {
     std::vector<Rate> rates;                // of the cases
     std::vector<Rate> arithmetic, copying;  // links and bytes a second on 1, 2, ... threads
     std::string driver = {};                // OpenGL's, in a sentence; empty where it was not needed
+    struct Figure {
+        std::string name;  // with its unit
+        double value;
+    };
+    std::vector<Figure> figures = {};  // what is no rate
+    std::vector<Panel> panels = {};    // to be drawn
 
     /// None of that name: null.
     const Rate* find(const std::string& name) const;
@@ -86,5 +92,6 @@ std::vector<Case> embed_cases();
 
 Benchmark pipeline();  // the 2012 paper's tables
 Benchmark heart();     // the 2005 paper's figures
+Benchmark touch();     // the 2007 paper's table
 
 }  // namespace palpate::speed

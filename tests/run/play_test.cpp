@@ -3,8 +3,10 @@
 
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
+#include "palpate/mesh/write.h"
 #include "palpate/run/run.h"
 #include "tests/scratch.h"
+#include "tests/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -50,6 +52,8 @@ Ended run_to_end(const Scene& scene, RunSettings settings = {}) {
     }
     return ended;
 }
+
+Mesh still_block() { return block(vec3(-0.1f, -0.05f, -0.1f), vec3(0.1f, 0, 0.1f), 1); }
 
 std::string block(const std::string& name, const std::string& more = "") {
     return "[[body]]\nname = \"" + name +
@@ -315,6 +319,68 @@ TEST(Play, NothingIsASceneToo) {
                             settings);
     EXPECT_FALSE(rope.diverged);
     EXPECT_EQ(rope.bodies[0].faces, 0u);
+}
+
+// ---- tools that are felt ----
+
+// A scene with a block that nothing moves, its top at y = 0, and a tip that goes 4 mm into it.
+Scene felt_scene(const Scratch& scratch, const std::string& touch, const std::string& device) {
+    write_mesh(still_block(), scratch / "block.obj");
+    return parse_scene(
+        "[simulation]\nduration = 4\n[[surface]]\nname = \"block\"\nsurface = \"block.obj\"\ntouch = " +
+            touch + "\n[[tool]]\nkind = \"dent\"\nradius = 0.003\ndevice = \"" + device +
+            "\"\nfrom = [0.01, 0.1, 0.01]\npath = [[0.1, 0, 0.01, 0], [1.3, 0, 0.002, 0], [2, 0, -0.004, 0], "
+            "[3, 0, -0.004, 0], [3.5, 0, 0.02, 0]]\n",
+        "test.toml", scratch / "");
+}
+
+TEST(Play, ADentIsFeltAndShown) {
+    Scratch scratch;
+    const Report report = run(felt_scene(scratch, "{ stiffness = 300 }", "script"));
+    ASSERT_EQ(report.tools.size(), 1u);
+    EXPECT_LE(std::abs(report.tools[0].largest_force - 300 * 0.004), 0.01 * 300 * 0.004);
+    EXPECT_LE(std::abs(report.tools[0].deepest_indentation - 0.004), 1e-5);
+    ASSERT_EQ(report.bodies.size(), 1u);
+    EXPECT_EQ(report.bodies[0].name, "block");
+    EXPECT_EQ(report.bodies[0].nodes, 0u);
+    EXPECT_GT(report.bodies[0].faces, 0u);
+}
+
+TEST(Play, AnArmIsPushedBackWhereAScriptIsNot) {
+    Scratch scratch;
+    const Report report = run(felt_scene(scratch, "{ stiffness = 300 }", "hand"));
+    EXPECT_LE(report.tools[0].deepest_indentation, 0.0025);
+    EXPECT_GE(report.tools[0].deepest_indentation, 0.0005);
+}
+
+TEST(Play, WhatIsDeeperThanItYieldsStaysInThePicture) {
+    Scratch scratch;
+    const Scene scene = felt_scene(scratch, "{ stiffness = 300, yield = 0.001 }", "script");
+    const Models made = build(scene);
+    Report report;
+    Play play(scene, made, report);
+    double time = 0;
+    auto until = [&](double end) {
+        for (; time < end - 1e-9; time += frame_seconds) play.advance(time, frame_seconds);
+    };
+    until(2.5);
+    EXPECT_EQ(play.dents(0).size(), 2u);
+    until(3.9);
+    const std::vector<Dent> left = play.dents(0);
+    ASSERT_EQ(left.size(), 1u);
+    EXPECT_LE(std::abs(left[0].depth - 0.003f), 1e-5f);
+}
+
+// A body that falls past: the tip feels it come, and its patch moves on between frames.
+TEST(Play, AMovingBodyIsFeltToo) {
+    const Scene falling = scene("[simulation]\nduration = 0.5\ngravity = [0, -0.5, 0]\n" +
+                                block("cube", "damping = 1\ntouch = { stiffness = 200 }\n") +
+                                "[[tool]]\nkind = \"dent\"\nradius = 0.004\npath = [[0, 0.01, -0.03, 0.01], "
+                                "[1, 0.01, -0.03, 0.01]]\n");
+    const Report report = run(falling);
+    EXPECT_GT(report.tools[0].deepest_indentation, 0.01);
+    EXPECT_LE(report.tools[0].largest_force, 3.3001);
+    for (double depth : report.tools[0].indentation) EXPECT_TRUE(std::isfinite(depth));
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace palpate {
 namespace {
 
@@ -379,6 +381,52 @@ path = [[0, 0, 0, 0], [1, 0.1, 0, 0]]
     expect_words(refusal(small + drag + path + "stiffness = 0\n"), {"stiffness"});
     expect_words(refusal(small + "[[tool]]\nnear = [0, 0, 0]\n" + path), {"near", "press"});
     expect_words(refusal(small + drag + "path = [[0, 0, 0, 0, 90, 0, 0]]\n"), {"rotation"});
+}
+
+TEST(Scene, SurfacesThatNothingMovesAndWhatFeelsThem) {
+    const std::string skin = R"(
+[[surface]]
+name = "skin"
+surface = "skin.obj"
+move = [0, 0.1, 0]
+touch = { stiffness = 250, damping = 0.5, friction = 0.1, width = 0.004, yield = 0.002 }
+)";
+    const std::string path = "path = [[0, 0, 0, 0], [1, 0, -0.1, 0]]\n",
+                      dent = "[[tool]]\nkind = \"dent\"\n" + path;
+    const Scene scene = parse(skin + dent + "shaft = 0.1\ndevice = \"hand\"\n", {"surface.skin.faces=500"});
+    ASSERT_EQ(scene.surfaces.size(), 1u);
+    EXPECT_TRUE(scene.bodies.empty());
+    const BodyRecipe& one = scene.surfaces[0];
+    EXPECT_EQ(one.surface, "skin.obj");
+    EXPECT_EQ(one.faces, 500);
+    EXPECT_EQ(one.feel.stiffness, 250);
+    EXPECT_EQ(one.feel.damping, 0.5);
+    EXPECT_EQ(one.feel.friction.still, 0.1);
+    EXPECT_EQ(one.feel.friction.sliding, 0.1);  // what slides holds no better than what sticks
+    EXPECT_EQ(one.feel.dent_width, 0.004);
+    EXPECT_EQ(one.feel.yield, 0.002);
+    EXPECT_EQ(scene.tools[0].kind, ToolKind::dent);
+    EXPECT_EQ(scene.tools[0].shaft, 0.1f);
+    EXPECT_TRUE(std::isinf(parse(small).bodies[0].feel.yield));
+
+    expect_words(refusal("[simulation]\n"), {"no body"});
+    expect_words(refusal("[[surface]]\n"), {"surface1", "volume"});
+    expect_words(refusal(skin + "nodes = 100\n"), {"nodes", "surface"});
+    expect_words(refusal(skin + skin), {"second", "skin"});
+    std::string cube = skin;
+    cube.replace(cube.find("skin"), 4, "cube");
+    expect_words(refusal(small + cube), {"second", "cube"});
+    expect_words(refusal(small + "touch = { stiffness = 0 }\n"), {"cube", "touch.stiffness"});
+    expect_words(refusal(small + "touch = { width = -1 }\n"), {"touch.width"});
+    expect_words(refusal(small + "touch = { friction = 0.1, sliding = 0.2 }\n"), {"sliding", "friction"});
+    expect_words(refusal(small + "touch = { stifness = 3 }\n"), {"stifness", "\"stiffness\""});
+    expect_words(refusal(small + dent + "stiffness = 100\n"), {"stiffness", "dent", "touch"});
+    expect_words(refusal(small + dent + "near = [0, 0, 0]\n"), {"near", "dent"});
+    expect_words(refusal(small + dent + "device = \"spoon\"\n"), {"spoon", "script", "hand"});
+    expect_words(refusal(small + "[[tool]]\ndevice = \"hand\"\n" + path), {"hand", "press"});
+    expect_words(refusal(small + dent + "shaft = -1\n"), {"shaft"});
+    expect_words(refusal(skin + "[[move]]\nbody = \"skin\"\nnodes = { below = 1 }\n" + path),
+                 {"no body", "skin"});
 }
 
 TEST(Scene, ChangesFromTheCommandLine) {
