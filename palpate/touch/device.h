@@ -8,10 +8,11 @@ namespace palpate {
 /// Where a hand is, as a device says.
 struct Hand {
     vec3 position = vec3(0);  // m, in the scene
-    double time = 0;          // s, on the loop's clock: when it was there. Touch lets go of what is too old
-    unsigned buttons = 0;     // a bit each, the first the lowest
-    unsigned placed = 0;  // goes up by one when the position jumps because the device, a clutch or a scale
-                          // was set anew and not because the hand went there: no force bridges such a jump
+    double time = 0;  // s, on the loop's clock: when it was there, never later than now. Touch lets go of
+                      // what is too old
+    unsigned buttons = 0;  // a bit each, the first the lowest
+    unsigned placed = 0;   // goes up by one when the position jumps because the device, a clutch or a scale
+                           // was set anew and not because the hand went there: no force bridges such a jump
 };
 
 /// What a device can do.
@@ -39,7 +40,8 @@ class Device {
     /// open files. `now`: the loop's clock, s. False if the device is gone; then `hand` is as it was.
     virtual bool read(double now, Hand& hand) noexcept = 0;
 
-    /// The force on the hand until the next call, N, in the scene. Like read(); false if the device is gone.
+    /// The force on the hand until the next call, N, in the scene, finite. Like read(); false if the device
+    /// is gone.
     virtual bool write(vec3 force) noexcept = 0;
 
     /// No force from now on until the next write(). May come from any thread at any time, also while read()

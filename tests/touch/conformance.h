@@ -130,7 +130,9 @@ TEST_P(Conformance, AfterAStopNoForceUntilTheNextWrite) {
         device_.read(begin + i * tick, hand);
         device_.write(push);
     }
-    if (subject_.force && GetParam().stays) EXPECT_NE(force(), vec3(0));
+    if (subject_.force && GetParam().stays) {
+        EXPECT_NE(force(), vec3(0));
+    }
     device_.stop();
     EXPECT_EQ(force(), vec3(0));
     for (int i = 100; i < 200; ++i) {
@@ -144,7 +146,9 @@ TEST_P(Conformance, AfterAStopNoForceUntilTheNextWrite) {
         device_.write(push);
         device_.read(begin + i * tick, hand);
     }
-    if (subject_.force && GetParam().stays) EXPECT_NE(force(), vec3(0));
+    if (subject_.force && GetParam().stays) {
+        EXPECT_NE(force(), vec3(0));
+    }
     device_.stop();
 }
 
@@ -162,9 +166,13 @@ TEST_P(Conformance, AnotherThreadMayStopIt) {
     over = true;
     watchdog.join();
     device_.stop();
-    if (subject_.force) EXPECT_EQ(subject_.force(), vec3(0));
+    if (subject_.force) {
+        EXPECT_EQ(subject_.force(), vec3(0));
+    }
     device_.read(begin + 2000 * tick, hand);
-    if (subject_.force) EXPECT_EQ(subject_.force(), vec3(0));
+    if (subject_.force) {
+        EXPECT_EQ(subject_.force(), vec3(0));
+    }
 }
 
 TEST_P(Conformance, StoppingItBeforeItIsOpenDoesNothing) {

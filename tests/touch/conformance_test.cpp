@@ -108,6 +108,20 @@ const std::vector<Specimen> all = {
     {"AllAroundTheHand", hand_in(wrapped_often)},
 };
 
+TEST(Allocations, AreCountedByThread) {
+    const std::size_t before = allocations();
+    std::vector<int> one(3), two(5);
+    struct alignas(64) Wide {
+        char bytes[64];
+    };
+    auto three = std::make_unique<Wide[]>(2);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(three.get()) % 64, 0u);
+    EXPECT_EQ(allocations() - before, 3u) << one[2] + two[4];
+    std::size_t elsewhere = 1;
+    std::thread([&] { elsewhere = allocations(); }).join();
+    EXPECT_EQ(elsewhere, 0u);
+}
+
 }  // namespace
 
 INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(all), specimen_name);

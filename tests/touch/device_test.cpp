@@ -145,6 +145,57 @@ TEST_P(VirtualHandAt, ADelayedForceComesThatMuchLater) {
     }
 }
 
+// The stiffest spring to the origin under which a person, who reads and is pushed once a tick, does not swing
+// ever wider: with x(n+1) = A x(n) + b force and force = -K x, the product of the eigenvalues reaches 1. A
+// and b by their series.
+double stiffest(const VirtualHandSettings& s, double tick) {
+    struct Pair {
+        long double place, speed;
+    };
+    auto rate = [&](Pair p, long double force) {
+        return Pair{p.speed,
+                    (force - (long double)s.stiffness * p.place - (long double)s.damping * p.speed) / s.mass};
+    };
+    auto after_a_tick = [&](Pair p, long double force) {
+        Pair term = rate(p, force), sum = p;
+        long double part = tick;
+        for (int n = 2; n < 40; ++n) {
+            sum = {sum.place + part * term.place, sum.speed + part * term.speed};
+            term = rate(term, 0);
+            part *= (long double)tick / n;
+        }
+        return sum;
+    };
+    const Pair a = after_a_tick({1, 0}, 0), c = after_a_tick({0, 1}, 0), b = after_a_tick({0, 0}, 1);
+    const long double product = a.place * c.speed - a.speed * c.place;
+    return double((1 - product) / (b.speed * c.place - b.place * c.speed));
+}
+
+TEST_P(VirtualHandAt, IsStableBeforeAWallUpToWhatTheoryAllows) {
+    const double tick = 1 / GetParam(), limit = stiffest(person, tick);
+    EXPECT_LE(std::abs(limit * tick / (2 * person.damping) - 1), 0.1);  // about 2 c / T, the well-known bound
+    for (double part : {0.98, 1.02}) {
+        VirtualHand hand({{0, vec3(0)}}, person);
+        hand.open();
+        Hand read;
+        double early = 0, late = 0;
+        const int ticks = int(60 * GetParam());
+        for (int i = 0; i < ticks; ++i) {
+            hand.read(i * tick, read);
+            // A push to begin with, then nothing but the wall, which is felt on both sides.
+            hand.write(i == 0 ? vec3(0.1f, 0, 0) : vec3(hand.position() * -part * limit));
+            const double place = std::abs(hand.position().x);
+            if (i < ticks / 4) early = std::max(early, place);
+            if (i >= ticks * 3 / 4) late = std::max(late, place);
+        }
+        // A fiftieth on either side of the limit is a factor of 1.1 each second.
+        if (part < 1)
+            EXPECT_LE(late, 0.1 * early);
+        else
+            EXPECT_GE(late, 10 * early);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Rates, VirtualHandAt, testing::Values(250.0, 1000.0, 4000.0),
                          [](const auto& rate) { return std::to_string(int(rate.param)) + "Hz"; });
 

@@ -35,6 +35,9 @@ TEST(Log, ReadsBackToTheBit) {
         now += 1e-3 * (1 + any(random));
         log.ticks.push_back({now, {vector(), now - 1e-4, unsigned(random()), unsigned(i)}, vector()});
     }
+    using Limits = std::numeric_limits<float>;
+    log.ticks[3].force = {Limits::denorm_min(), Limits::max(), Limits::lowest()};
+    log.ticks[4].force = {Limits::min(), 3 * Limits::denorm_min(), Limits::epsilon()};
     const Scratch folder;
     write_log(folder / "log.csv", log);
     const Log back = read_log(folder / "log.csv");

@@ -6,8 +6,8 @@
 
 namespace palpate {
 
-/// A device around another, which it owns: by itself it changes nothing. Those that do change what they say
-/// of the five. A decorator that read() has failed in leaves `hand` as it was, as any device does.
+/// A device around another, which it owns. By itself it changes nothing: what derives from it overrides those
+/// of the five methods in which it does.
 class Decorator : public Device {
  public:
     explicit Decorator(std::unique_ptr<Device> inner) : inner_(std::move(inner)) {}

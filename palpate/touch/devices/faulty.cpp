@@ -1,11 +1,14 @@
 #include "palpate/touch/devices/faulty.h"
 
+#include <cassert>
 #include <limits>
 
 namespace palpate {
 
 Faulty::Faulty(std::unique_ptr<Device> inner, std::vector<Fault> faults, std::function<void(double)> sleep)
-    : Decorator(std::move(inner)), faults_(std::move(faults)), sleep_(std::move(sleep)) {}
+    : Decorator(std::move(inner)), faults_(std::move(faults)), sleep_(std::move(sleep)) {
+    assert(sleep_);
+}
 
 void Faulty::open() {
     start_.reset();

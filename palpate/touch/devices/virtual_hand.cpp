@@ -74,8 +74,7 @@ bool VirtualHand::read(double now, Hand& hand) noexcept {
 }
 
 bool VirtualHand::write(vec3 force) noexcept {
-    // With no room the newest gives way: the order stays, and it can only be that the loop is faster than
-    // any.
+    // Only a loop faster than any finds no room. Then the newest gives way, so that the order stays.
     if (count_ == waiting_.size()) --count_;
     waiting_[(first_ + count_++) % waiting_.size()] = {time_ + settings_.delay,
                                                        finite(force) ? force : vec3(0), stops_.load()};
