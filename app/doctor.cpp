@@ -1,12 +1,15 @@
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "palpate/base/error.h"
+#include "palpate/base/clock.h"
 #include "palpate/base/pipe.h"
 #include "palpate/body/cloth.h"
 #include "palpate/gl/context.h"
 #include "palpate/render/renderer.h"
 #include "palpate/solver/cpu/cpu.h"
 #include "palpate/solver/solver.h"
+#include "palpate/touch/devices/script.h"
+#include "palpate/touch/loop.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -125,6 +128,28 @@ Finding look_at_mapping(const std::optional<gl::Context>& context) {
     return finding;
 }
 
+// A hand that touches nothing, for a second.
+Finding look_at_haptics() {
+    constexpr double late = 0.002;  // s: a device notices two ticks
+    Touch hand(std::make_unique<Script>(Path{{0, vec3(0)}}), {});
+    TouchLoop loop({&hand});
+    sleep_until(now() + 1);
+    const LoopTiming& timing = loop.timing();
+    const Granted granted = loop.granted();
+    Finding finding{"haptics",
+                    fmt::format("{:.0f} ticks in a second, 99.9 % of them within {:.2f} ms, the longest {:.2f} ms; "
+                                "granted: {}, memory {}",
+                                double(timing.periods.count()), 1e3 * timing.periods.quantile(0.999),
+                                1e3 * timing.periods.longest(), granted.schedule,
+                                granted.memory_locked ? "locked" : "not locked")};
+    if (!(timing.periods.quantile(0.99) <= late))
+        finding.problem = fmt::format(
+            "{}; let the user have real-time priority (rtprio 90 and memlock unlimited in "
+            "/etc/security/limits.conf), or leave a core free",
+            finding.found);
+    return finding;
+}
+
 Finding look_at_films() {
     if (has_program("ffmpeg")) return {"films", "the program ffmpeg"};
     return {"films", "", {}, "no program ffmpeg for --video; install ffmpeg, or ask for --images"};
@@ -168,6 +193,7 @@ Diagnosis diagnose() {
     all.findings.push_back(opengl);
     for (const auto& backend : names(Backend{})) all.findings.push_back(look_at(backend.value, context));
     all.findings.push_back(look_at_mapping(context));
+    all.findings.push_back(look_at_haptics());
     all.findings.push_back(look_at_films());
     all.findings.push_back(look_at_data());
     return all;

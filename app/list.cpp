@@ -28,6 +28,6 @@ void add_list(CLI::App& app) {
     add("backends", "where a body's motion can be computed", print_names<Backend>);
     add("integrators", "how it can be computed", print_names<Integrator>);
     add("mappings", "how a surface can follow the nodes", print_names<Mapping>);
-    add("devices", "where a tool's motion can come from", [] { fmt::print("script\n"); });
+    add("devices", "where a tool's motion can come from", print_names<DeviceKind>);
     add("scenes", "the scenes that come with Palpate", print_scenes);
 }

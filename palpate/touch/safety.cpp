@@ -51,6 +51,7 @@ dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surfac
 void Safety::let_go(Held why) {
     reason_ = why;
     waits_ = true;
+    calm_since_ = time_;
     gain_ = 0;
     absorbed_ = 0;
 }
@@ -79,7 +80,8 @@ void Safety::watch(const Hand& hand, dvec3 surface) {
 // From nothing, once little is wanted, to all.
 double Safety::grown(double wanted, double now) {
     if (waits_) {
-        if (wanted > settings_.small_force) return 0;
+        if (wanted > settings_.small_force) calm_since_ = now;
+        if (now - calm_since_ < settings_.calm) return 0;
         waits_ = false;
         begun_ = now;
     }

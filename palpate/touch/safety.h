@@ -11,7 +11,8 @@ struct SafetySettings {
     double lasting_force = 0;  // N, for longer than about `warm_up`; 0: the device's
     double warm_up = 10;       // s
     double fall = 0.008;       // s, in which the peak force may come or go: the fastest change
-    double small_force = 0.1;  // N: only when no more is wanted does force begin, and then
+    double small_force = 0.1;  // N: only when no more is wanted for
+    double calm = 0.02;        // s without a break does force begin, and
     double ramp = 1;           // s, grows to what it shall be
     double fresh = 0.003;      // s: a sample of the hand that is older lets go,
     double fade = 0.020;       // s, in so long
@@ -78,7 +79,8 @@ class Safety {
     const double peak_, lasting_;
     Held reason_ = Held::waiting;
     bool waits_ = true;
-    double begun_ = 0;  // s, when the ramp began
+    double calm_since_ = 0;  // s, when little began to be wanted
+    double begun_ = 0;       // s, when the ramp began
     double gain_ = 0;
     double heat_ = 0;      // N², the mean square of the force
     double absorbed_ = 0;  // J, from the hand since the touch began; below 0 it was given out

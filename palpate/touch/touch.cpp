@@ -84,7 +84,9 @@ void Touch::take_in(const Hand& read) {
         proxy_.put(dvec3(read.position));
         velocity_ = dvec3(0);
     } else if (const double seconds = read.time - hand_.time; seconds > 0) {
-        const dvec3 speed = dvec3(read.position - hand_.position) / seconds;
+        dvec3 speed = dvec3(read.position - hand_.position) / seconds;
+        if (!(glm::length(speed) <= settings_.safety.fastest_hand))
+            speed = velocity_ = dvec3(0);  // no motion of a hand
         velocity_ += (1 - std::exp(-seconds / settings_.velocity_filter)) * (speed - velocity_);
     }
     hand_ = read;

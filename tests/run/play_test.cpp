@@ -336,7 +336,7 @@ Scene felt_scene(const Scratch& scratch, const std::string& touch, const std::st
 
 TEST(Play, ADentIsFeltAndShown) {
     Scratch scratch;
-    const Report report = run(felt_scene(scratch, "{ stiffness = 300 }", "script"));
+    const Report report = run(felt_scene(scratch, "{ stiffness = 300 }", "script"), {});
     ASSERT_EQ(report.tools.size(), 1u);
     EXPECT_LE(std::abs(report.tools[0].largest_force - 300 * 0.004), 0.01 * 300 * 0.004);
     EXPECT_LE(std::abs(report.tools[0].deepest_indentation - 0.004), 1e-5);
@@ -348,7 +348,7 @@ TEST(Play, ADentIsFeltAndShown) {
 
 TEST(Play, AnArmIsPushedBackWhereAScriptIsNot) {
     Scratch scratch;
-    const Report report = run(felt_scene(scratch, "{ stiffness = 300 }", "hand"));
+    const Report report = run(felt_scene(scratch, "{ stiffness = 300 }", "hand"), {});
     EXPECT_LE(report.tools[0].deepest_indentation, 0.0025);
     EXPECT_GE(report.tools[0].deepest_indentation, 0.0005);
 }
@@ -377,7 +377,7 @@ TEST(Play, AMovingBodyIsFeltToo) {
                                 block("cube", "damping = 1\ntouch = { stiffness = 200 }\n") +
                                 "[[tool]]\nkind = \"dent\"\nradius = 0.004\npath = [[0, 0.01, -0.03, 0.01], "
                                 "[1, 0.01, -0.03, 0.01]]\n");
-    const Report report = run(falling);
+    const Report report = run(falling, {});
     EXPECT_GT(report.tools[0].deepest_indentation, 0.01);
     EXPECT_LE(report.tools[0].largest_force, 3.3001);
     for (double depth : report.tools[0].indentation) EXPECT_TRUE(std::isfinite(depth));
