@@ -11,7 +11,7 @@ namespace {
 
 constexpr double skin =
     1e-7;  // m: so far the ball stays off what it touches, so that rounding never takes it in
-constexpr double still = 1e-10;            // m: less is no motion
+constexpr double still = 1e-7;             // m: less is no motion
 constexpr std::size_t most_touching = 12;  // with normals of their own
 constexpr int most_moves = 12;             // in one call; what is left of the way is for the next
 
@@ -39,10 +39,42 @@ Nearest nearest(const Patch::Face& face, dvec3 centre) {
     return found;
 }
 
-// Only a sheet stops what comes from behind. A solid's far side is behind too, and what has got into a solid
-// by mistake shall find its way out.
-bool stops(const Patch::Face& face, dvec3 centre) {
-    return face.is_sheet || glm::dot(centre - face.corners[0], front(face)) >= 0;
+// A face, the plane that it lies in and a disc in that which holds it: they tell most faces apart from what
+// matters.
+struct Flat {
+    Patch::Face face;
+    dvec3 up;  // unit; nothing where the face has no area, so that everything is at its height
+    double level;
+    dvec3 middle;
+    double size;  // m, from there to the farthest corner
+
+    Flat() = default;
+    explicit Flat(const Patch::Face& f) : face(f), up(front(f)) {
+        const auto& [a, b, c] = face.corners;
+        const double square = glm::dot(up, up);
+        up *= square > 0 ? 1 / std::sqrt(square) : 0;
+        level = glm::dot(up, a);
+        middle = (a + b + c) / 3.0;
+        size = std::max({glm::distance(a, middle), glm::distance(b, middle), glm::distance(c, middle)});
+    }
+
+    double height(dvec3 point) const { return glm::dot(up, point) - level; }  // m
+
+    // Whether a ball that is not above or below the disc by more than its radius can touch that.
+    bool may_touch(dvec3 centre, double high, double radius) const {
+        const dvec3 off = centre - middle;
+        const double aside = glm::dot(off, off) - high * high;
+        const double most = size + std::sqrt(std::max(radius * radius - high * high, 0.0));
+        return aside <= most * most * (1 + 1e-9);
+    }
+};
+
+// Whether a face can be what stops a ball of radius `off` that begins to move at the first height and ends at
+// the other. Only a sheet stops what comes from behind: a solid's far side is behind too, and what has got
+// into a solid by mistake shall find its way out.
+bool may_stop(const Flat& flat, double begin, double end, double off) {
+    if (begin >= 0) return std::min(begin, end) <= off;
+    return flat.face.is_sheet && std::max(begin, end) >= -off;
 }
 
 // How much of a way, up to `most`, the ball can go before it comes within `off` of a face. The distance to a
@@ -75,11 +107,14 @@ struct Touching {
     }
 };
 
-Touching touching(const Patch& patch, double time, dvec3 centre, double radius) {
+template <class Near>
+Touching touching(Near& near, dvec3 centre, double radius) {
     const double reach = radius + 2 * skin;
     Touching found;
-    patch.for_each_near(centre, reach, time, [&](const Patch::Face& face) {
-        if (!stops(face, centre)) return;
+    near.for_each(centre, reach, [&](const Flat& flat) {
+        const Patch::Face& face = flat.face;
+        const double high = flat.height(centre);
+        if (!may_stop(flat, high, high, reach) || !flat.may_touch(centre, high, reach)) return;
         const Nearest at = nearest(face, centre);
         if (at.distance > reach) return;
         const dvec3 velocity = at.weights.x * face.velocities[0] + at.weights.y * face.velocities[1] +
@@ -171,6 +206,49 @@ double part_within(dvec3 from, dvec3 way, dvec3 centre, double radius) {
 
 }  // namespace
 
+// The faces about the ball as they lie in this tick. They are fetched once and not for each question, of
+// which there are many about nearly the same place.
+class Proxy::Near {
+ public:
+    Near(const Patch& patch, double time) : patch_(patch), time_(time) {}
+
+    const Patch& patch() const { return patch_; }
+
+    template <class Act>
+    void for_each(dvec3 point, double reach, const Act& act) {
+        if (!holds(point, reach)) fetch(point, reach + beyond);
+        if (!holds(point, reach))
+            return patch_.for_each_near(point, reach, time_,
+                                        [&](const Patch::Face& face) { act(Flat(face)); });
+        for (std::size_t i = 0; i < count_; ++i) act(faces_[i]);
+    }
+
+ private:
+    static constexpr double beyond = 5e-4;  // m: so far the ball mostly goes in a tick
+    static constexpr std::size_t room = 128;
+
+    bool holds(dvec3 point, double reach) const { return glm::distance(point, centre_) + reach <= reach_; }
+
+    void fetch(dvec3 point, double reach) {
+        centre_ = point;
+        reach_ = reach;
+        count_ = 0;
+        patch_.for_each_near(point, reach, time_, [&](const Patch::Face& face) {
+            if (count_ < room)
+                faces_[count_++] = Flat(face);
+            else
+                reach_ = -1;  // too many
+        });
+    }
+
+    const Patch& patch_;
+    const double time_;
+    dvec3 centre_ = dvec3(0);
+    double reach_ = -1;  // m; nothing is held
+    std::size_t count_ = 0;
+    std::array<Flat, room> faces_;
+};
+
 void Proxy::put(dvec3 place) {
     place_ = place;
     slips_ = true;
@@ -179,15 +257,16 @@ void Proxy::put(dvec3 place) {
 
 void Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction) {
     const bool touched = count_ > 0;
+    Near near(patch, time);
     if (touched) {
         move_with_surface(patch, time);
-        go_back_down(patch, time);
+        go_back_down(near);
     }
-    leave_what_came_over_it(patch, time);
+    leave_what_came_over_it(near);
     time_ = time;
 
     dvec3 goal = hand;
-    const dvec3 along = given_way(patch, time, hand);
+    const dvec3 along = given_way(near, hand);
     if (touched && count_ > 0) {
         // A spring along the surface, no stronger than friction allows, holds it back.
         dvec3 sunk(0);
@@ -207,8 +286,8 @@ void Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const 
     } else {
         slips_ = true;
     }
-    approach(patch, time, goal);
-    given_way(patch, time, hand);
+    approach(near, goal);
+    given_way(near, hand);
 }
 
 // Where the surface carries what it is touched at. A triangle that is no longer in the patch has gone on
@@ -227,20 +306,21 @@ void Proxy::move_with_surface(const Patch& patch, double time) {
 }
 
 // A surface that has sunk away under it has not let go of it.
-void Proxy::go_back_down(const Patch& patch, double time) {
-    if (touching(patch, time, place_, radius_).count > 0) return;
+void Proxy::go_back_down(Near& near) {
+    if (touching(near, place_, radius_).count > 0) return;
     dvec3 sunk(0);
     for (const Contact& contact : contacts()) sunk += contact.depth * contact.normal;
-    go(patch, time, -sunk);
+    go(near, -sunk);
 }
 
-void Proxy::leave_what_came_over_it(const Patch& patch, double time) {
+void Proxy::leave_what_came_over_it(Near& near) {
     for (int i = 0; i < most_moves; ++i) {
         double least = radius_;
         dvec3 out(0);
-        patch.for_each_near(place_, radius_, time, [&](const Patch::Face& face) {
-            if (!stops(face, place_)) return;
-            const Nearest at = nearest(face, place_);
+        near.for_each(place_, radius_, [&](const Flat& flat) {
+            const double high = flat.height(place_);
+            if (!may_stop(flat, high, high, radius_) || !flat.may_touch(place_, high, radius_)) return;
+            const Nearest at = nearest(flat.face, place_);
             if (at.distance >= least) return;
             least = at.distance;
             out = at.normal;
@@ -251,8 +331,8 @@ void Proxy::leave_what_came_over_it(const Patch& patch, double time) {
 }
 
 // The way towards a goal that the surfaces leave, from where it is; and what they are.
-dvec3 Proxy::given_way(const Patch& patch, double time, dvec3 goal) {
-    const Touching all = touching(patch, time, place_, radius_);
+dvec3 Proxy::given_way(Near& near, dvec3 goal) {
+    const Touching all = touching(near, place_, radius_);
     const Given given = give_way(goal - place_, all);
     count_ = 0;
     for (std::size_t i = 0; i < given.count; ++i) {
@@ -263,17 +343,17 @@ dvec3 Proxy::given_way(const Patch& patch, double time, dvec3 goal) {
     return given.way;
 }
 
-void Proxy::approach(const Patch& patch, double time, dvec3 goal) {
+void Proxy::approach(Near& near, dvec3 goal) {
     for (int i = 0; i < most_moves; ++i) {
-        const dvec3 way = given_way(patch, time, goal);
+        const dvec3 way = given_way(near, goal);
         if (!(glm::length(way) > still)) return;
-        go(patch, time, way);
+        go(near, way);
     }
 }
 
 // Along a way, up to the first thing on it. A long one in pieces, beside which there is little to look at.
-void Proxy::go(const Patch& patch, double time, dvec3 way) {
-    way *= part_within(place_, way, patch.centre(), patch.radius() - radius_ - skin);
+void Proxy::go(Near& near, dvec3 way) {
+    way *= part_within(place_, way, near.patch().centre(), near.patch().radius() - radius_ - skin);
     const double length = glm::length(way);
     if (!(length > 0)) return;
     const double longest = std::max(radius_, 0.001), off = radius_ + skin;
@@ -281,11 +361,13 @@ void Proxy::go(const Patch& patch, double time, dvec3 way) {
     way /= pieces;
     for (int i = 0; i < pieces; ++i) {
         double part = 1;
-        patch.for_each_near(place_ + 0.5 * way, 0.5 * glm::length(way) + off, time,
-                            [&](const Patch::Face& face) {
-                                if (stops(face, place_))
-                                    part = std::min(part, free_part(face, place_, way, off, part));
-                            });
+        const dvec3 middle = place_ + 0.5 * way;
+        const double reach = 0.5 * glm::length(way) + off;
+        near.for_each(middle, reach, [&](const Flat& flat) {
+            if (flat.may_touch(middle, flat.height(middle), reach) &&
+                may_stop(flat, flat.height(place_), flat.height(place_ + part * way), off))
+                part = std::min(part, free_part(flat.face, place_, way, off, part));
+        });
         place_ += part * way;
         if (part < 1) return;
     }

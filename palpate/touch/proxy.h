@@ -43,12 +43,13 @@ class Proxy {
     std::span<const Contact> contacts() const { return {contacts_.data(), count_}; }
 
  private:
+    class Near;
     void move_with_surface(const Patch& patch, double time);
-    void leave_what_came_over_it(const Patch& patch, double time);
-    void go_back_down(const Patch& patch, double time);
-    void approach(const Patch& patch, double time, dvec3 goal);
-    void go(const Patch& patch, double time, dvec3 way);
-    dvec3 given_way(const Patch& patch, double time, dvec3 goal);
+    void leave_what_came_over_it(Near& near);
+    void go_back_down(Near& near);
+    void approach(Near& near, dvec3 goal);
+    void go(Near& near, dvec3 way);
+    dvec3 given_way(Near& near, dvec3 goal);
 
     double radius_;
     dvec3 place_ = dvec3(0);

@@ -7,13 +7,13 @@
 
 namespace palpate {
 
-/// Durations, counted in boxes each a sixteenth of an octave wide, from 1 µs to 67 s. One thread adds; others
+/// Durations, counted in boxes each a hundredth wide, from 1 µs to 67 s. One thread adds; others
 /// may ask meanwhile. Adding takes a few nanoseconds and no memory.
 class Durations {
  public:
     void add(double seconds) noexcept;
 
-    /// So much of them is no longer than this, s; exact to a twentieth. 0 of none.
+    /// So much of them is no longer than this, s; exact to a hundredth. 0 of none.
     double quantile(double part) const;
     double mean() const;
     double longest() const { return longest_.load(std::memory_order_relaxed); }
@@ -26,7 +26,7 @@ class Durations {
     std::vector<Box> boxes() const;  // those that hold any
 
  private:
-    static constexpr std::size_t boxes_an_octave = 16, octaves = 26;
+    static constexpr std::size_t boxes_an_octave = 64, octaves = 26;
 
     std::array<std::atomic<std::uint32_t>, octaves* boxes_an_octave> boxes_ = {};
     std::atomic<std::uint64_t> count_ = 0;

@@ -25,7 +25,7 @@ TEST(Durations, QuantilesAreThoseOfTheSortedList) {
     for (double one : list) sum += one;
     for (double part : {0.01, 0.5, 0.99, 0.999, 1.0}) {
         const double right = list[std::min(list.size() - 1, std::size_t(part * double(list.size())))];
-        EXPECT_LE(std::abs(counted.quantile(part) - right), 0.05 * right) << part;
+        EXPECT_LE(std::abs(counted.quantile(part) - right), 0.012 * right) << part;
     }
     EXPECT_EQ(counted.longest(), list.back());
     EXPECT_LE(std::abs(counted.mean() - sum / double(list.size())), 1e-12);
