@@ -1,11 +1,14 @@
 #include "palpate/body/dent.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
 namespace {
 
 using std::exp;
+using std::max;
+using std::min;
 
 #define FN
 #define select(c, a, b) ((c) ? (a) : (b))
@@ -31,10 +34,13 @@ bool sane(float length) { return std::abs(length) < 1e9f; }
 
 bool acts(const Dent& dent) {
     return sane(dent.centre.x) && sane(dent.centre.y) && sane(dent.centre.z) && sane(dent.depth) &&
-           sane(dent.width) && dent.width >= 1e-9f && dent.depth != 0;
+           sane(dent.facing.x) && sane(dent.facing.y) && sane(dent.facing.z) && sane(dent.width) &&
+           dent.width >= 1e-9f && dent.depth != 0;
 }
 
-float depth_at(std::span<const Dent> dents, vec3 place) { return Text{dents}.depth_at(place); }
+float depth_at(std::span<const Dent> dents, vec3 place, vec3 normal) {
+    return Text{dents}.depth_at(place, normal);
+}
 
 vec3 dented(std::span<const Dent> dents, vec3 place, vec3 normal) {
     return Text{dents}.dented(place, normal);

@@ -8,11 +8,15 @@ namespace palpate {
 /// A dent in a surface (Luciano, Banerjee and Rizzi 2007, section IV): each place on it moves against its
 /// normal by depth · exp(-d² / 2 width²), d being its distance from `centre`. Several add up. Distances are
 /// taken on the surface without any dents, wherever it is at the moment; that is where the contact point
-/// (Proxy) is too. They are straight, so that a near but unconnected part of the surface is dented as well.
+/// (Proxy) is too. They are straight, so that a near but unconnected part of the surface would be dented as
+/// well, as the paper says of itself; `facing` leaves out what looks another way, such as the far wall of a
+/// thin part.
 struct Dent {
     vec3 centre = vec3(0);  // m
     float depth = 0;        // m; below 0 it is a bump
     float width = 0.01f;    // m, the standard deviation
+    vec3 facing =
+        vec3(0);  // unit: surface that looks within 60° of that is dented, from 90° on none; zero: all is
 };
 
 /// How many of them a surface can have in a picture.
@@ -22,8 +26,8 @@ constexpr int most_dents = 64;
 /// beyond 1e9 m, or a width under 1e-9 m.
 bool acts(const Dent& dent);
 
-/// How deep all of them are at a place of the undented surface, m.
-float depth_at(std::span<const Dent> dents, vec3 place);
+/// How deep all of them are at a place of the undented surface, m; `normal` is the surface's own there, unit.
+float depth_at(std::span<const Dent> dents, vec3 place, vec3 normal);
 
 /// Where that place is then; `normal` is the surface's own, unit.
 vec3 dented(std::span<const Dent> dents, vec3 place, vec3 normal);

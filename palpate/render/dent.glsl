@@ -3,7 +3,9 @@
 
 struct Dent {
     vec3 centre;
-    float depth, width;
+    float depth;
+    vec3 facing;
+    float width;
 };
 layout(std140, binding = DENTS) uniform Dents {
     Dent dents[MOST_DENTS];

@@ -19,21 +19,25 @@ const char* words_end_glsl =
     ;
 
 // As std140 lays out the block of dent.glsl.
-struct alignas(16) Placed {
-    Dent dent;
+struct Placed {
+    vec3 centre;
+    float depth;
+    vec3 facing;
+    float width;
 };
 struct Block {
     std::array<Placed, most_dents> dents = {};
     int count = 0;
 };
-static_assert(sizeof(Dent) == 5 * 4 && sizeof(Placed) == 32);
+static_assert(sizeof(Placed) == 32);
 
 }  // namespace
 
 void GpuDents::set(std::span<const Dent> dents) {
     Block block;
     for (const Dent& dent : dents)
-        if (acts(dent) && block.count < most_dents) block.dents[std::size_t(block.count++)].dent = dent;
+        if (acts(dent) && block.count < most_dents)
+            block.dents[std::size_t(block.count++)] = {dent.centre, dent.depth, dent.facing, dent.width};
     count_ = block.count;
     buffer_.upload(std::span(&block, 1));
 }

@@ -21,7 +21,7 @@ dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel
     const Feel& feel = feels[std::size_t(most->surface)];
     const dvec3 normal = sunk / depth;
 
-    const double left = depth - double(depth_at(lasting, vec3(most->point)));
+    const double left = depth - double(depth_at(lasting, vec3(most->point), vec3(normal)));
     if (!(left > 0)) return dvec3(0);
     const double going_out = glm::dot(velocity - most->velocity, normal);
     const double push = std::max(feel.stiffness * left - feel.damping * going_out, 0.0);

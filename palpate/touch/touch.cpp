@@ -139,7 +139,8 @@ void Touch::leave_marks(double now) {
         const auto s = std::size_t(contact.surface);
         const Feel& feel = settings_.feels[s];
         const vec3 place(contact.point);
-        const double more = contact.depth - feel.yield - double(depth_at(lasting_[s], place));
+        const double more =
+            contact.depth - feel.yield - double(depth_at(lasting_[s], place, vec3(contact.normal)));
         if (!(more > 0)) continue;
         // Near enough to one that is there already, that one grows; else there is a new one, as long as there
         // is room.
@@ -158,8 +159,9 @@ void Touch::leave_marks(double now) {
         std::size_t all = 0;
         for (const auto& list : marks_) all += list.size();
         if (all == most_marks) continue;
-        marks_[s].push_back(
-            {{place, float(more), float(feel.dent_width)}, contact.triangle, contact.weights});
+        marks_[s].push_back({{place, float(more), float(feel.dent_width), vec3(contact.normal)},
+                             contact.triangle,
+                             contact.weights});
         lasting_[s].push_back(marks_[s].back().dent);
     }
 }
@@ -186,8 +188,8 @@ void Touch::tell(double now, dvec3 force) {
     for (const Contact& contact : proxy_.contacts()) {
         const auto s = std::size_t(contact.surface);
         const vec3 place(contact.point);
-        const float depth = float(contact.depth) - depth_at(lasting_[s], place);
-        if (depth > 0) add({place, depth, float(settings_.feels[s].dent_width)}, s);
+        const float depth = float(contact.depth) - depth_at(lasting_[s], place, vec3(contact.normal));
+        if (depth > 0) add({place, depth, float(settings_.feels[s].dent_width), vec3(contact.normal)}, s);
     }
     felt_.store(told_);
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -24,18 +25,21 @@ class Dents : public ::testing::Test {
         std::vector<Dent> dents;
         for (int i = 0; i < count; ++i)
             dents.push_back({middle + vec3(any(-0.03, 0.03) * along + any(-0.03, 0.03) * across),
-                             float(any(-0.01, 0.02)), float(any(0.004, 0.02))});
+                             float(any(-0.01, 0.02)), float(any(0.004, 0.02)),
+                             i % 2 ? any_direction() : vec3(0)});
         return dents;
     }
     std::mt19937 random_{11};
 };
 
 // The definition, in double.
-double depth(const std::vector<Dent>& dents, dvec3 place) {
+double depth(const std::vector<Dent>& dents, dvec3 place, dvec3 normal) {
     double sum = 0;
     for (const Dent& dent : dents) {
         const double d = glm::distance(place, dvec3(dent.centre));
-        sum += dent.depth * std::exp(-d * d / (2.0 * dent.width * dent.width));
+        const double t = std::clamp(2 * glm::dot(dvec3(dent.facing), normal), 0.0, 1.0);
+        const double share = dent.facing == vec3(0) ? 1 : t * t * (3 - 2 * t);
+        sum += share * dent.depth * std::exp(-d * d / (2.0 * dent.width * dent.width));
     }
     return sum;
 }
@@ -49,12 +53,23 @@ TEST_F(Dents, AreGaussiansThatAddUp) {
         const std::vector<Dent> dents = any_dents(trial % 9, any_vector(0.1), {1, 0, 0}, {0, 0, 1});
         const vec3 place = (dents.empty() ? vec3(0) : dents.front().centre) + any_vector(0.05),
                    normal = any_direction();
-        const double deep = depth(dents, place);
-        EXPECT_LE(std::abs(depth_at(dents, place) - deep), 2e-6 * (furthest(dents) + 1e-3));
+        const double deep = depth(dents, place, normal);
+        EXPECT_LE(std::abs(depth_at(dents, place, normal) - deep), 2e-6 * (furthest(dents) + 1e-3));
         EXPECT_LE(glm::distance(dvec3(dented(dents, place, normal)), dvec3(place) - deep * dvec3(normal)),
                   3e-8);
         EXPECT_LE(std::abs(deep), 1.0001 * furthest(dents));
     }
+}
+
+TEST_F(Dents, LeaveOutWhatLooksAnotherWay) {
+    const Dent dent{vec3(0), 0.01f, 0.01f, vec3(0, 1, 0)};
+    auto deep = [&](float degrees) {
+        const float a = glm::radians(degrees);
+        return depth_at({&dent, 1}, vec3(0), vec3(std::sin(a), std::cos(a), 0));
+    };
+    for (float all : {0.0f, 30.0f, -59.9f}) EXPECT_EQ(deep(all), 0.01f);
+    for (float none : {90.1f, 120.0f, 180.0f}) EXPECT_EQ(deep(none), 0);
+    EXPECT_GT(deep(70), deep(80));
 }
 
 TEST_F(Dents, NormalsOfADentedPlaneAreThoseOfFiniteDifferences) {
@@ -67,7 +82,7 @@ TEST_F(Dents, NormalsOfADentedPlaneAreThoseOfFiniteDifferences) {
                     across = glm::cross(n, along);
         const std::vector<Dent> dents = any_dents(1 + trial % 7, middle, along, across);
         const vec3 place = middle + vec3(any(-0.04, 0.04) * along + any(-0.04, 0.04) * across);
-        auto displaced = [&](dvec3 p) { return p - depth(dents, p) * n; };
+        auto displaced = [&](dvec3 p) { return p - depth(dents, p, n) * n; };
         const double h = 1e-6;
         const dvec3 p(place), there = glm::cross(displaced(p + h * along) - displaced(p - h * along),
                                                  displaced(p + h * across) - displaced(p - h * across));
@@ -126,7 +141,7 @@ TEST_F(Dents, WithoutAnyNothingMoves) {
     for (int trial = 0; trial < 100; ++trial) {
         const vec3 place = any_vector(0.3), normal = any_direction();
         for (std::span<const Dent> none : {std::span<const Dent>(), std::span<const Dent>(far)}) {
-            EXPECT_EQ(depth_at(none, place), 0.0f);
+            EXPECT_EQ(depth_at(none, place, normal), 0.0f);
             EXPECT_TRUE(same_bits(dented(none, place, normal), place));
             EXPECT_TRUE(same_bits(dented_normal(none, place, normal), normal));
         }
@@ -139,7 +154,8 @@ TEST_F(Dents, OfNoSaneLengthsAreHarmless) {
     for (float a : odd)
         for (float b : odd)
             for (const Dent& dent :
-                 {Dent{vec3(a, 0, 0), b, 0.01f}, Dent{vec3(0), a, b}, Dent{vec3(0, b, 0), 0.01f, a}}) {
+                 {Dent{vec3(a, 0, 0), b, 0.01f}, Dent{vec3(0), a, b}, Dent{vec3(0, b, 0), 0.01f, a},
+                  Dent{vec3(0), 0.01f, 0.01f, vec3(a, b, 0)}}) {
                 EXPECT_TRUE(std::isfinite(furthest({&dent, 1})));
                 for (vec3 place : {vec3(0), vec3(1e-9f, 0, 0), vec3(0.01f, 0.02f, -0.5f), vec3(1e6f)}) {
                     const vec3 normal = any_direction(), p = dented({&dent, 1}, place, normal),
