@@ -1,7 +1,7 @@
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "palpate/base/error.h"
 #include "palpate/base/clock.h"
+#include "palpate/base/error.h"
 #include "palpate/base/pipe.h"
 #include "palpate/body/cloth.h"
 #include "palpate/gl/context.h"
@@ -136,12 +136,13 @@ Finding look_at_haptics() {
     sleep_until(now() + 1);
     const LoopTiming& timing = loop.timing();
     const Granted granted = loop.granted();
-    Finding finding{"haptics",
-                    fmt::format("{:.0f} ticks in a second, 99.9 % of them within {:.2f} ms, the longest {:.2f} ms; "
-                                "granted: {}, memory {}",
-                                double(timing.periods.count()), 1e3 * timing.periods.quantile(0.999),
-                                1e3 * timing.periods.longest(), granted.schedule,
-                                granted.memory_locked ? "locked" : "not locked")};
+    Finding finding{
+        "haptics",
+        fmt::format("{:.0f} ticks in a second, 99.9 % of them within {:.2f} ms, the longest {:.2f} ms; "
+                    "granted: {}, memory {}",
+                    double(timing.periods.count()), 1e3 * timing.periods.quantile(0.999),
+                    1e3 * timing.periods.longest(), granted.schedule,
+                    granted.memory_locked ? "locked" : "not locked")};
     if (!(timing.periods.quantile(0.99) <= late))
         finding.problem = fmt::format(
             "{}; let the user have real-time priority (rtprio 90 and memlock unlimited in "

@@ -34,9 +34,11 @@ int allowed(decltype(RLIMIT_RTPRIO) which) {
     return int(std::min<rlim_t>(limit.rlim_cur, 1000));
 }
 
-std::string schedule() {
-    for (int priority : {wanted_priority, std::min(allowed(RLIMIT_RTPRIO), wanted_priority)})
+std::string schedule(bool first) {
+    for (int highest : {wanted_priority, std::min(allowed(RLIMIT_RTPRIO), wanted_priority)}) {
+        const int priority = first ? highest : highest - 1;
         if (become_fifo(priority)) return fmt::format("FIFO {}", priority);
+    }
     const auto thread = id_t(syscall(SYS_gettid));
     for (int nice : {wanted_niceness, 20 - allowed(RLIMIT_NICE)})
         if (nice < 0 && setpriority(PRIO_PROCESS, thread, nice) == 0) return fmt::format("nice {}", nice);
@@ -51,11 +53,11 @@ bool lock_memory() {
 
 }  // namespace
 
-Granted keep_time() {
+Granted keep_time(bool first) {
     constexpr unsigned long nanoseconds = 1;
     Granted granted;
     granted.wakes_exactly = prctl(PR_SET_TIMERSLACK, nanoseconds) == 0;
-    granted.schedule = schedule();
+    granted.schedule = schedule(first);
     granted.memory_locked = lock_memory();
     return granted;
 }

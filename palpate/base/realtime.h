@@ -10,10 +10,11 @@ struct Granted {
     bool wakes_exactly = false;  // timers are not put off to save power
 };
 
-/// Asks that the calling thread run before others: as a real-time thread of the highest priority that is
-/// allowed; else with as much of niceness as is; else it stays as it is. Memory is locked only where no limit
-/// is set on that, because with one a later allocation would fail.
-Granted keep_time();
+/// Asks that the calling thread run before others, and if `first` even before those that asked for that: as a
+/// real-time thread of the highest priority that is allowed; else with as much of niceness as is; else it
+/// stays as it is. Memory is locked only where no limit is set on that, because with one a later allocation
+/// would fail.
+Granted keep_time(bool first = false);
 
 /// The kernel's name, version and kind of preemption, in a line.
 std::string kernel();

@@ -21,10 +21,20 @@ bool comes_near(const Touchable& surface, uvec3 t, vec3 centre, float radius) {
 
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+vec3 sane(vec3 velocity) {
+    if (!is_finite(velocity)) return vec3(0);
+    const float speed = glm::length(velocity);
+    return speed > Patch::fastest_guess ? Patch::fastest_guess / speed * velocity : velocity;
+}
+
 }  // namespace
 
 Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, double time)
-    : centre_(centre), radius_(radius), time_(time), mesh_(std::make_unique<Mesh>()) {
+    : centre_(centre),
+      radius_(radius),
+      time_(time),
+      surfaces_(surfaces.size()),
+      mesh_(std::make_unique<Mesh>()) {
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         const Touchable& surface = surfaces[s];
         assert(surface.velocities.empty() || surface.velocities.size() == surface.positions.size());
@@ -38,7 +48,7 @@ Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, dou
             for (int k = 0; k < 3; ++k) {
                 mesh_->positions.push_back(surface.positions[triangle[k]]);
                 const vec3 v = surface.velocities.empty() ? vec3(0) : surface.velocities[triangle[k]];
-                velocities_.push_back(is_finite(v) ? v : vec3(0));
+                velocities_.push_back(sane(v));
                 fastest_ = std::max(fastest_, glm::length(velocities_.back()));
             }
             mesh_->triangles.emplace_back(first, first + 1, first + 2);
@@ -57,16 +67,19 @@ std::optional<Patch::Face> Patch::find(int surface, int triangle, double time) c
     const std::pair wanted(surface, triangle);
     const auto found = std::lower_bound(from_.begin(), from_.end(), wanted, before);
     if (found == from_.end() || std::pair(found->surface, found->triangle) != wanted) return std::nullopt;
-    return face_at(Index(found - from_.begin()), age_at(time));
+    return face_at(Index(found - from_.begin()), time);
 }
 
-Patch::Face Patch::face_at(Index face, double age) const {
+Patch::Face Patch::face_at(Index face, double time) const {
     const From& from = from_[face];
+    const double age = age_at(time);
+    const bool guesses = time - time_ <= longest_guess;  // after that it stands still
     Face found{{}, {}, from.surface, from.triangle, from.is_sheet};
     for (int k = 0; k < 3; ++k) {
         const unsigned corner = mesh_->triangles[face][k];
-        found.velocities[k] = dvec3(velocities_[corner]);
-        found.corners[k] = dvec3(mesh_->positions[corner]) + age * found.velocities[k];
+        const dvec3 velocity(velocities_[corner]);
+        found.velocities[k] = guesses ? velocity : dvec3(0);
+        found.corners[k] = dvec3(mesh_->positions[corner]) + age * velocity;
     }
     return found;
 }

@@ -46,7 +46,14 @@ class Patch {
     dvec3 centre() const { return centre_; }
     double radius() const { return radius_; }
 
-    bool moves() const { return fastest_ > 0; }
+    /// No vertex goes faster than that, m/s; velocities beyond `fastest_guess` are brought down to it, as
+    /// what goes so fast has blown up.
+    double fastest() const { return double(fastest_); }
+    static constexpr float fastest_guess = 3;
+
+    /// How many Touchables it was made of.
+    std::size_t surfaces() const { return surfaces_; }
+
     std::size_t size() const { return from_.size(); }
 
     /// One of a surface's triangles at a time, if it is in the patch.
@@ -57,9 +64,9 @@ class Patch {
     template <class Act>
     void for_each_near(dvec3 point, double reach, double time, const Act& act) const {
         const double age = age_at(time);
-        const float far =
-            float(reach + double(fastest_) * age) + 1e-6f;  // and the rounding of the point to floats
-        for_each_within(vec3(point), far * far, [&](Index face) { act(face_at(face, age)); });
+        const float far = float(reach + double(fastest_) * age) + 1e-6f +
+                          3e-7f * float(glm::length(point));  // and the rounding of the point to floats
+        for_each_within(vec3(point), far * far, [&](Index face) { act(face_at(face, time)); });
     }
 
  private:
@@ -69,7 +76,7 @@ class Patch {
     };
 
     double age_at(double time) const;
-    Face face_at(Index face, double age) const;
+    Face face_at(Index face, double time) const;
 
     template <class Act>
     void for_each_within(vec3 point, float squared, const Act& act) const {
@@ -95,6 +102,7 @@ class Patch {
     double radius_ = std::numeric_limits<double>::infinity();
     double time_ = 0;
     float fastest_ = 0;  // m/s
+    std::size_t surfaces_ = 0;
     std::unique_ptr<Mesh> mesh_;
     std::unique_ptr<Tree> tree_;  // over that
     std::vector<vec3> velocities_;

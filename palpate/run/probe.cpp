@@ -16,11 +16,11 @@ constexpr float beyond = 0.1f;  // m around the hand that it knows of what moves
 Probe::Probe(const ToolRecipe& recipe, std::vector<Feel> feels) : recipe_(recipe), feels_(std::move(feels)) {}
 
 void Probe::begin(double time, const std::vector<Skin>& skins) {
-    const vec3 origin = recipe_.from ? brought_to_touch(recipe_, skins) : vec3(0);
+    if (recipe_.from) origin_ = brought_to_touch(recipe_, skins);
     Path path = recipe_.path;
     for (Waypoint& point : path) {
         point.time -= time + 1 / rate;  // the device counts from its first read
-        point.position += origin;
+        point.position += origin_;
     }
     start_ = time;
     touch_ = std::make_unique<Touch>(make_device(recipe_.device, {.path = std::move(path)}),
@@ -55,7 +55,7 @@ Patch Probe::patch(double time, const std::vector<Skin>& skins,
         anything_moves |= !velocities[s].empty();
     }
     if (!anything_moves) return Patch(surfaces);
-    const vec3 hand = ticks_ > 0 ? felt_.proxy : position(recipe_.path, time);
+    const vec3 hand = ticks_ > 0 ? felt_.proxy : origin_ + position(recipe_.path, time);
     return Patch(surfaces, hand, beyond, time);
 }
 

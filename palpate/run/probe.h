@@ -29,9 +29,6 @@ class Probe {
     double force() const { return force_; }     // N, mean over the last call
     double depth() const { return depth_; }     // m, at its end
 
-    /// Why it was let go of, if it ever was after it had begun; for the report's notes.
-    Held held() const { return felt_.held; }
-
  private:
     void begin(double time, const std::vector<Skin>& skins);
     Patch patch(double time, const std::vector<Skin>& skins,
@@ -40,7 +37,8 @@ class Probe {
     const ToolRecipe& recipe_;
     std::vector<Feel> feels_;
     std::unique_ptr<Touch> touch_;
-    double start_ = 0;  // s
+    vec3 origin_ = vec3(0);  // m, of the path
+    double start_ = 0;       // s
     long ticks_ = 0;
     bool knows_surfaces_ = false;
     Felt felt_ = {};

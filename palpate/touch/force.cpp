@@ -7,14 +7,10 @@ namespace palpate {
 
 dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel> feels,
             std::span<const Dent> lasting) {
-    const auto contacts = proxy.contacts();
-    if (contacts.empty()) return dvec3(0);
+    const Contact* most = proxy.deepest();
+    if (!most) return dvec3(0);
     dvec3 sunk(0);
-    const Contact* most = &contacts[0];
-    for (const Contact& contact : contacts) {
-        sunk += contact.depth * contact.normal;
-        if (contact.depth > most->depth) most = &contact;
-    }
+    for (const Contact& contact : proxy.contacts()) sunk += contact.depth * contact.normal;
     const double depth = glm::length(sunk);
     if (!(depth > 0)) return dvec3(0);
     assert(std::size_t(most->surface) < feels.size());

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace palpate {
 namespace {
@@ -20,18 +21,25 @@ TouchLoop::TouchLoop(std::vector<Touch*> hands, LoopSettings settings)
     if (!(settings.rate >= slowest && settings.rate <= fastest))
         throw Error(fmt::format("a rate of {} Hz", settings.rate), "the haptic loop",
                     fmt::format("choose one from {} to {}", slowest, fastest));
-    for (Touch* hand : hands_) {
-        paced_ |= hand->device().paces;
-        hand->times_proxy = true;
+    for (Touch* hand : hands_) paced_ |= hand->device().paces;
+    watchdog_ = std::thread([this] { watch(); });  // before there is anything to watch
+    try {
+        loop_ = std::thread([this] { run(); });
+    } catch (...) {
+        end();
+        throw;
     }
-    loop_ = std::thread([this] { run(); });
     started_.wait(false);  // so that granted() has an answer
-    watchdog_ = std::thread([this] { watch(); });
 }
 
-TouchLoop::~TouchLoop() {
+TouchLoop::~TouchLoop() { end(); }
+
+// The watchdog last: the loop may hang in a device on its way out.
+void TouchLoop::end() {
     ends_.store(true, std::memory_order_release);
-    loop_.join();
+    for (Touch* hand : hands_) hand->let_go();
+    if (loop_.joinable()) loop_.join();
+    watch_ends_.store(true, std::memory_order_release);
     watchdog_.join();
     for (Touch* hand : hands_) hand->let_go();
 }
@@ -42,31 +50,34 @@ void TouchLoop::run() {
     granted_ = keep_time();
     started_.store(true, std::memory_order_release);
     started_.notify_all();
-    double last = now();
-    Deadlines deadlines(settings_.rate, last);
-    bool first = true;
+    Deadlines deadlines(settings_.rate, now());
+    std::optional<double> last;
+    bool answered = false;
     while (!ends_.load(std::memory_order_acquire)) {
-        if (!paced_) wait_for(deadlines.next());
+        const bool follows = paced_ && answered;  // a device that is gone does not pace
+        if (!follows) wait_for(deadlines.next());
         const double start = now();
-        if (!first) timing_.periods.add(start - last);
-        first = false;
+        if (last) timing_.periods.add(start - *last);
         last = start;
         const double work = thread_seconds();
-        tick(start);
+        answered = tick(start);
         timing_.work.add(thread_seconds() - work);
-        if (paced_) continue;
         const std::uint64_t missed = deadlines.advance(now());
+        if (follows) continue;
         timing_.missed.fetch_add(missed, std::memory_order_relaxed);
         timing_.longest_run.store(std::max(timing_.longest_run.load(std::memory_order_relaxed), missed),
                                   std::memory_order_relaxed);
     }
 }
 
-void TouchLoop::tick(double time) {
+bool TouchLoop::tick(double time) {
+    bool all = true;
     for (Touch* hand : hands_) {
-        hand->tick(time);
-        timing_.proxy.add(hand->proxy_seconds());
+        double proxy = 0;
+        all &= hand->tick(time, &proxy);
+        timing_.proxy.add(proxy);
     }
+    return all;
 }
 
 void TouchLoop::wait_for(double time) const {
@@ -74,11 +85,10 @@ void TouchLoop::wait_for(double time) const {
     while (now() < time) {}
 }
 
-// Sleeps most of the time, and does so on any core, so that it needs no priority of its own as long as there
-// is one to spare; but where the loop has one it asks for one too, or a spinning loop could keep it away.
+// It sleeps nearly always, and runs before the loop, which may be stuck in anything.
 void TouchLoop::watch() {
-    keep_time();
-    while (!ends_.load(std::memory_order_acquire)) {
+    keep_time(true);
+    while (!watch_ends_.load(std::memory_order_acquire)) {
         sleep_until(now() + watch_every);
         const double time = now();
         for (Touch* hand : hands_)

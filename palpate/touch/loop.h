@@ -48,7 +48,8 @@ class TouchLoop {
  private:
     void run();
     void watch();
-    void tick(double now);
+    bool tick(double now);
+    void end();
     void wait_for(double time) const;
 
     const std::vector<Touch*> hands_;
@@ -56,9 +57,9 @@ class TouchLoop {
     bool paced_ = false;
     LoopTiming timing_;
     Granted granted_;
-    std::atomic<bool> started_ = false, ends_ = false;
+    std::atomic<bool> started_ = false, ends_ = false, watch_ends_ = false;
     std::atomic<std::uint64_t> stalls_ = 0;
-    std::thread loop_, watchdog_;
+    std::thread watchdog_, loop_;
 };
 
 }  // namespace palpate

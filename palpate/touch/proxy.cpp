@@ -100,15 +100,24 @@ struct Touching {
     std::array<Contact, most_touching> list;
     std::size_t count = 0;
 
-    void add(const Contact& contact) {
+    // Where there are too many, those stay that are most in the way of what is wanted.
+    void add(const Contact& contact, dvec3 wanted) {
         for (std::size_t i = 0; i < count; ++i)
             if (glm::dot(list[i].normal, contact.normal) > 1 - 1e-12) return;
-        if (count < list.size()) list[count++] = contact;
+        if (count < list.size()) {
+            list[count++] = contact;
+            return;
+        }
+        auto along = [&](const Contact& one) { return glm::dot(one.normal, wanted); };
+        Contact* least = &list[0];
+        for (Contact& one : list)
+            if (along(one) > along(*least)) least = &one;
+        if (along(contact) < along(*least)) *least = contact;
     }
 };
 
 template <class Near>
-Touching touching(Near& near, dvec3 centre, double radius) {
+Touching touching(Near& near, dvec3 centre, double radius, dvec3 wanted) {
     const double reach = radius + 2 * skin;
     Touching found;
     near.for_each(centre, reach, [&](const Flat& flat) {
@@ -119,7 +128,7 @@ Touching touching(Near& near, dvec3 centre, double radius) {
         if (at.distance > reach) return;
         const dvec3 velocity = at.weights.x * face.velocities[0] + at.weights.y * face.velocities[1] +
                                at.weights.z * face.velocities[2];
-        found.add({at.point, at.normal, velocity, face.surface, face.triangle, at.weights, 0});
+        found.add({at.point, at.normal, velocity, face.surface, face.triangle, at.weights, 0}, wanted);
     });
     return found;
 }
@@ -195,13 +204,14 @@ Given give_way(dvec3 wanted, const Touching& all) {
     return given;
 }
 
-// How much of a way lies within a ball; none if it begins outside.
+// How much of a way can be gone before it leaves a ball. From outside, only a way that leads in.
 double part_within(dvec3 from, dvec3 way, dvec3 centre, double radius) {
     if (std::isinf(radius)) return 1;
     const dvec3 off = from - centre;
     const double a = glm::dot(way, way), b = glm::dot(off, way), c = glm::dot(off, off) - radius * radius;
-    if (!(c < 0) || !(radius > 0)) return 0;
-    return a > 0 ? std::min(1.0, (std::sqrt(b * b - a * c) - b) / a) : 1;
+    const double square = b * b - a * c;
+    if (!(radius > 0) || !(a > 0) || !(square >= 0) || (c >= 0 && b >= 0)) return 0;
+    return std::min(1.0, (std::sqrt(square) - b) / a);
 }
 
 }  // namespace
@@ -216,7 +226,7 @@ class Proxy::Near {
 
     template <class Act>
     void for_each(dvec3 point, double reach, const Act& act) {
-        if (!holds(point, reach)) fetch(point, reach + beyond);
+        if (!holds(point, reach) && !too_many_) fetch(point, reach + beyond);
         if (!holds(point, reach))
             return patch_.for_each_near(point, reach, time_,
                                         [&](const Patch::Face& face) { act(Flat(face)); });
@@ -237,14 +247,16 @@ class Proxy::Near {
             if (count_ < room)
                 faces_[count_++] = Flat(face);
             else
-                reach_ = -1;  // too many
+                too_many_ = true;
         });
+        if (too_many_) reach_ = -1;
     }
 
     const Patch& patch_;
     const double time_;
     dvec3 centre_ = dvec3(0);
-    double reach_ = -1;  // m; nothing is held
+    double reach_ = -1;      // m; nothing is held
+    bool too_many_ = false;  // so that it is asked directly
     std::size_t count_ = 0;
     std::array<Flat, room> faces_;
 };
@@ -255,14 +267,22 @@ void Proxy::put(dvec3 place) {
     count_ = 0;
 }
 
-void Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction) {
+const Contact* Proxy::deepest() const {
+    const Contact* most = nullptr;
+    for (const Contact& contact : contacts())
+        if (!most || contact.depth > most->depth) most = &contact;
+    return most;
+}
+
+double Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction) {
     const bool touched = count_ > 0;
+    const dvec3 before = place_;
+    const double explained = patch.fastest() * std::clamp(time - time_, 0.0, Patch::longest_guess);
     Near near(patch, time);
-    if (touched) {
-        move_with_surface(patch, time);
-        go_back_down(near);
-    }
+    if (touched) move_with_surface(patch, time, explained);
     leave_what_came_over_it(near);
+    const double pushed = std::max(glm::distance(before, place_) - explained, 0.0);
+    if (touched) go_back_down(near);
     time_ = time;
 
     dvec3 goal = hand;
@@ -270,17 +290,13 @@ void Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const 
     if (touched && count_ > 0) {
         // A spring along the surface, no stronger than friction allows, holds it back.
         dvec3 sunk(0);
-        const Contact* most = &contacts_[0];
-        for (const Contact& contact : contacts()) {
-            sunk += contact.depth * contact.normal;
-            if (contact.depth > most->depth) most = &contact;
-        }
-        assert(std::size_t(most->surface) < friction.size());
-        const Friction& rough = friction[std::size_t(most->surface)];
+        for (const Contact& contact : contacts()) sunk += contact.depth * contact.normal;
+        const auto surface = std::size_t(deepest()->surface);
+        assert(surface < friction.size());
+        const Friction& rough = friction[surface];
         const double way = glm::length(along);
-        const bool slips = way > (slips_ ? rough.sliding : rough.still) * glm::length(sunk);
-        slips_ = slips;
-        if (!slips) return;
+        slips_ = way > (slips_ ? rough.sliding : rough.still) * glm::length(sunk);
+        if (!slips_) return pushed;
         const double held = std::min(rough.sliding * glm::length(sunk), way);
         goal -= held / way * along;
     } else {
@@ -288,26 +304,23 @@ void Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const 
     }
     approach(near, goal);
     given_way(near, hand);
+    return pushed;
 }
 
 // Where the surface carries what it is touched at. A triangle that is no longer in the patch has gone on
-// evenly.
-void Proxy::move_with_surface(const Patch& patch, double time) {
-    const Contact& held =
-        *std::max_element(contacts_.begin(), contacts_.begin() + std::ptrdiff_t(count_),
-                          [](const Contact& a, const Contact& b) { return a.depth < b.depth; });
-    if (const auto face = patch.find(held.surface, held.triangle, time)) {
-        const dvec3 now = held.weights.x * face->corners[0] + held.weights.y * face->corners[1] +
-                          held.weights.z * face->corners[2];
-        place_ += now - held.point;
-    } else {
-        place_ += std::clamp(time - time_, 0.0, Patch::longest_guess) * held.velocity;
-    }
+// evenly; one that has gone farther than surfaces go is another by the same number.
+void Proxy::move_with_surface(const Patch& patch, double time, double explained) {
+    const Contact& held = *deepest();
+    const auto face = patch.find(held.surface, held.triangle, time);
+    const dvec3 now = face ? held.weights.x * face->corners[0] + held.weights.y * face->corners[1] +
+                                 held.weights.z * face->corners[2]
+                           : held.point + std::clamp(time - time_, 0.0, Patch::longest_guess) * held.velocity;
+    if (glm::distance(now, held.point) <= explained + radius_) place_ += now - held.point;
 }
 
 // A surface that has sunk away under it has not let go of it.
 void Proxy::go_back_down(Near& near) {
-    if (touching(near, place_, radius_).count > 0) return;
+    if (touching(near, place_, radius_, dvec3(0)).count > 0) return;
     dvec3 sunk(0);
     for (const Contact& contact : contacts()) sunk += contact.depth * contact.normal;
     go(near, -sunk);
@@ -332,7 +345,7 @@ void Proxy::leave_what_came_over_it(Near& near) {
 
 // The way towards a goal that the surfaces leave, from where it is; and what they are.
 dvec3 Proxy::given_way(Near& near, dvec3 goal) {
-    const Touching all = touching(near, place_, radius_);
+    const Touching all = touching(near, place_, radius_, goal - place_);
     const Given given = give_way(goal - place_, all);
     count_ = 0;
     for (std::size_t i = 0; i < given.count; ++i) {
@@ -357,9 +370,10 @@ void Proxy::go(Near& near, dvec3 way) {
     const double length = glm::length(way);
     if (!(length > 0)) return;
     const double longest = std::max(radius_, 0.001), off = radius_ + skin;
-    const int pieces = int(std::ceil(length / longest));
-    way /= pieces;
-    for (int i = 0; i < pieces; ++i) {
+    constexpr double most_pieces = 64;  // what is farther is for the next tick
+    const double pieces = std::min(std::ceil(length / longest), most_pieces);
+    way *= std::min(longest / length, 1 / pieces);
+    for (int i = 0; i < int(pieces); ++i) {
         double part = 1;
         const dvec3 middle = place_ + 0.5 * way;
         const double reach = 0.5 * glm::length(way) + off;

@@ -33,7 +33,9 @@ class Proxy {
 
     /// Goes as near to the hand as the patch allows, whose surfaces have moved on to `time` (s). `friction`:
     /// one for each surface of the patch. Beyond what the patch knows it does not go.
-    void follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction);
+    /// Returns how far surfaces have pushed or carried it, in m, beyond what their speeds explain: 0, unless
+    /// a surface appeared or jumped.
+    double follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction);
 
     dvec3 position() const { return place_; }  // m, of its centre
     double radius() const { return radius_; }
@@ -42,9 +44,12 @@ class Proxy {
     /// Where it is stopped, with planes that are not redundant; none if it is where the hand is.
     std::span<const Contact> contacts() const { return {contacts_.data(), count_}; }
 
+    /// The one where the hand is deepest; null if there is none.
+    const Contact* deepest() const;
+
  private:
     class Near;
-    void move_with_surface(const Patch& patch, double time);
+    void move_with_surface(const Patch& patch, double time, double explained);
     void leave_what_came_over_it(Near& near);
     void go_back_down(Near& near);
     void approach(Near& near, dvec3 goal);

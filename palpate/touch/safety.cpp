@@ -1,5 +1,7 @@
 #include "palpate/touch/safety.h"
 
+#include "palpate/base/error.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,7 @@ bool is_sound(dvec3 wanted, const Hand& hand) {
 
 dvec3 no_longer_than(double most, dvec3 v) {
     const double length = glm::length(v);
-    return length > most ? most / length * v : v;
+    return length <= most ? v : most / length * v;
 }
 
 }  // namespace
@@ -23,18 +25,33 @@ Safety::Safety(const DeviceSpec& device, const SafetySettings& settings)
     : settings_(settings),
       peak_(settings.peak_force > 0 ? std::min(settings.peak_force, double(device.peak_force))
                                     : double(device.peak_force)),
-      lasting_(std::min(
-          peak_, settings.lasting_force > 0 ? settings.lasting_force : double(device.lasting_force))) {}
+      lasting_(std::min(peak_,
+                        settings.lasting_force > 0 ? settings.lasting_force : double(device.lasting_force))) {
+    const bool sound = std::isfinite(peak_) && peak_ > 0 && lasting_ > 0 && settings.fall > 0 &&
+                       settings.fade > 0 && settings.fresh >= 0 && settings.small_force >= 0 &&
+                       settings.lost > 0;
+    if (!sound)
+        throw Error("limits of force or of time that are not above zero", device.name,
+                    "give finite ones in its DeviceSpec and in SafetySettings");
+}
 
 dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surface, double now) {
-    const double seconds = std::clamp(now - time_, 0.0, 0.01);
+    const double seconds = time_ ? now - *time_ : 0;
     time_ = now;
+    if (!calm_since_) calm_since_ = now;
+    if (!(seconds >= 0 && seconds <= settings_.lost)) {
+        let_go(Held::stalled);
+        return none();
+    }
     double fresh = 0;
     if (!is_finite(velocity)) velocity = dvec3(0);
     if (!is_finite(surface)) surface = dvec3(0);
     if (is_sound(wanted, hand)) {
         watch(hand, surface);
-        fresh = std::clamp(1 - (now - hand.time - settings_.fresh) / settings_.fade, 0.0, 1.0);
+        // One from the future has a clock of its own, by which it would never grow old.
+        const double age = now - hand.time;
+        if (age >= -settings_.fresh)
+            fresh = std::clamp(1 - (age - settings_.fresh) / settings_.fade, 0.0, 1.0);
         if (!(fresh > 0)) let_go(Held::stale);
     } else {
         let_go(Held::not_finite);
@@ -42,9 +59,15 @@ dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surfac
     }
     gain_ = fresh > 0 ? grown(glm::length(wanted), now) : 0;
     dvec3 force = passive(gain_ * fresh * wanted, velocity - surface, seconds);
-    force = no_longer_than(budget(glm::length(force), seconds), force);
+    force = no_longer_than(budget(), force);
     force = force_ + no_longer_than(peak_ / settings_.fall * seconds, force - force_);
     force_ = no_longer_than(peak_, force);
+    if (!is_finite(force_)) {  // numbers so large that they are none together
+        let_go(Held::not_finite);
+        return none();
+    }
+    const double weight = settings_.warm_up > 0 ? 1 - std::exp(-seconds / settings_.warm_up) : 1;
+    heat_ += (glm::dot(force_, force_) - heat_) * weight;
     return force_;
 }
 
@@ -54,6 +77,7 @@ void Safety::let_go(Held why) {
     calm_since_ = time_;
     gain_ = 0;
     absorbed_ = 0;
+    if (why == Held::placed) force_ = dvec3(0);  // it belongs to another place
 }
 
 Held Safety::held() const {
@@ -67,7 +91,7 @@ void Safety::watch(const Hand& hand, dvec3 surface) {
         const double seconds = std::max(hand.time - before_.time, 0.0);
         const dvec3 went = dvec3(hand.position) - dvec3(before_.position);
         const double way = glm::length(went);
-        absorbed_ -= glm::dot(force_, went - seconds * surface);
+        absorbed_ = std::min(absorbed_ - glm::dot(force_, went - seconds * surface), settings_.store);
         if (hand.placed != before_.placed)
             let_go(Held::placed);
         else if (way > settings_.jump && way > settings_.fastest_hand * seconds)
@@ -80,8 +104,11 @@ void Safety::watch(const Hand& hand, dvec3 surface) {
 // From nothing, once little is wanted, to all.
 double Safety::grown(double wanted, double now) {
     if (waits_) {
-        if (wanted > settings_.small_force) calm_since_ = now;
-        if (now - calm_since_ < settings_.calm) return 0;
+        if (wanted > settings_.small_force) {
+            calm_since_ = now;
+            return 0;
+        }
+        if (now - *calm_since_ < settings_.calm) return 0;
         waits_ = false;
         begun_ = now;
     }
@@ -102,14 +129,10 @@ dvec3 Safety::passive(dvec3 force, dvec3 velocity, double seconds) {
     return force - damping * velocity;
 }
 
-// A motor's heat goes with the square of its force: the mean of that is held to what it can stand.
-double Safety::budget(double force, double seconds) {
-    const double weight = settings_.warm_up > 0 ? 1 - std::exp(-seconds / settings_.warm_up) : 1;
-    const double bounded = std::min(force, peak_);
-    heat_ += (bounded * bounded - heat_) * weight;
-    const double full = lasting_ * lasting_;
-    // From four fifths of that on the peak comes down, so that force does not break off.
-    const double over = std::clamp((heat_ / full - 0.8) / 0.2, 0.0, 1.0);
+// A motor's heat goes with the square of its force: the mean of that is held to what it can stand. From four
+// fifths of it on the peak comes down, so that force does not break off.
+double Safety::budget() const {
+    const double over = std::clamp((heat_ / (lasting_ * lasting_) - 0.8) / 0.2, 0.0, 1.0);
     return peak_ + over * (lasting_ - peak_);
 }
 

@@ -3,6 +3,8 @@
 #include "palpate/base/vectors.h"
 #include "palpate/touch/device.h"
 
+#include <optional>
+
 namespace palpate {
 
 /// Limits on what a hand may be pushed with.
@@ -16,8 +18,10 @@ struct SafetySettings {
     double ramp = 1;           // s, grows to what it shall be
     double fresh = 0.003;      // s: a sample of the hand that is older lets go,
     double fade = 0.020;       // s, in so long
-    double fastest_hand = 10;  // m/s, and
-    double jump = 0.01;        // m: a hand that is farther on than that was not moved by a person
+    double fastest_hand = 3;   // m/s, and
+    double jump = 0.01;        // m: a hand that is farther on than both allow was not moved by a person
+    double lost = 0.008;       // s without a tick, after which all that is known is too old
+    double store = 0.02;       // J, that the passivity observer takes a surface to hold at most
     double most_damping = 5;   // N·s/m, that the passivity observer may add
 };
 
@@ -32,6 +36,7 @@ enum class Held {
     stale,       // the samples are old
     gone,        // the device does not answer
     stalled,     // the loop did not come round, and the watchdog let go
+    pushed,      // a surface appeared or jumped where the hand was
 };
 
 inline std::span<const Named<Held>> names(Held) {
@@ -43,7 +48,8 @@ inline std::span<const Named<Held>> names(Held) {
                                           {Held::not_finite, "not a number"},
                                           {Held::stale, "old samples"},
                                           {Held::gone, "no device"},
-                                          {Held::stalled, "the loop stalled"}};
+                                          {Held::stalled, "the loop stalled"},
+                                          {Held::pushed, "a surface came over the hand"}};
     return all;
 }
 
@@ -51,6 +57,7 @@ inline std::span<const Named<Held>> names(Held) {
 /// Starts with no force. Works on the time that it is given, so it behaves the same on any clock.
 class Safety {
  public:
+    /// Throws Error if the device or the settings have limits that are none.
     Safety(const DeviceSpec& device, const SafetySettings& settings);
 
     /// What may be written now of a wanted force, N. `hand`: the newest sample; `velocity`: of the hand, m/s;
@@ -73,18 +80,18 @@ class Safety {
     void watch(const Hand& hand, dvec3 surface);
     double grown(double wanted, double now);
     dvec3 passive(dvec3 force, dvec3 velocity, double seconds);
-    double budget(double force, double seconds);
+    double budget() const;
 
     const SafetySettings settings_;
     const double peak_, lasting_;
     Held reason_ = Held::waiting;
     bool waits_ = true;
-    double calm_since_ = 0;  // s, when little began to be wanted
-    double begun_ = 0;       // s, when the ramp began
+    std::optional<double> calm_since_;  // s, when little began to be wanted
+    double begun_ = 0;                  // s, when the ramp began
     double gain_ = 0;
-    double heat_ = 0;      // N², the mean square of the force
-    double absorbed_ = 0;  // J, from the hand since the touch began; below 0 it was given out
-    double time_ = 0;
+    double heat_ = 0;             // N², the mean square of the force
+    double absorbed_ = 0;         // J, from the hand since the touch began; below 0 it was given out
+    std::optional<double> time_;  // of the last call
     Hand before_ = {};
     bool knows_hand_ = false;
     dvec3 force_ = dvec3(0);

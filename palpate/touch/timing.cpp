@@ -48,10 +48,10 @@ double Durations::mean() const {
 
 std::uint64_t Deadlines::advance(double now) {
     next_ += period_;
-    if (now <= next_ + period_) return 0;
-    const auto missed = std::uint64_t((now - next_) / period_);
-    next_ += double(missed) * period_;
-    return missed;
+    if (now <= next_) return 0;
+    const double missed = std::floor((now - next_) / period_) + 1;
+    next_ += missed * period_;
+    return std::uint64_t(missed);
 }
 
 }  // namespace palpate

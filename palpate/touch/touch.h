@@ -20,10 +20,10 @@ struct TouchSettings {
     std::vector<Feel> feels = {
         {}};  // one for each surface that it meets, in the order of the patches' Touchables
     SafetySettings safety = {};
+    double surprise = 0.002;  // m: a surface that moves the tip by more than its speed explains lets go of it
     double velocity_filter =
         0.002;  // s: a hand's speed is its way over so long, because places come in steps
     double direction_filter = 0.003;  // s: so long a force takes to turn when the tip goes over an edge
-    double lost = 0.008;              // s without a tick, after which the watchdog lets go
 };
 
 /// What a touch was like at its last tick.
@@ -53,38 +53,37 @@ struct Felt {
 /// meanwhile.
 class Touch {
  public:
-    /// Opens the device. Throws Error.
+    /// Opens the device. Throws Error if it cannot be, or if settings or feels are out of all bounds.
     Touch(std::unique_ptr<Device> device, TouchSettings settings);
     ~Touch();  // no force is left
 
-    /// What the hand can meet from now on. Call it as often as surfaces move, or once if they do not.
+    /// What the hand can meet from now on, of no more surfaces than there are feels; else throws Error. Call
+    /// it as often as surfaces move, or once if they do not.
     void feel(Patch patch);
 
     /// The newest.
     Felt felt() const { return felt_.load(); }
 
-    void tick(double now) noexcept;
+    /// False if the device did not answer. `proxy_seconds`, if given, is what the proxy took of the
+    /// processor's time.
+    bool tick(double now, double* proxy_seconds = nullptr) noexcept;
 
-    /// The watchdog's: stops the device if there has been no tick for too long. True if it did so now.
+    /// The watchdog's, once a millisecond: stops the device as long as there has been no tick for too long.
+    /// True the first time.
     bool watch(double now) noexcept;
 
-    /// No more force, when nobody ticks any more.
-    void let_go() noexcept { device_->stop(); }
+    /// No more force, when nobody ticks any more; the next tick, if there is one, begins anew.
+    void let_go() noexcept;
 
     const TouchSettings& settings() const { return settings_; }
     const DeviceSpec& device() const { return spec_; }
-    double proxy_seconds() const {
-        return proxy_seconds_;
-    }  // of the processor's time in the last tick; the loop's own
-
-    /// Whether tick() measures that, which takes a fraction of a microsecond.
-    bool times_proxy = false;
 
  private:
     void take_in(const Hand& hand);
-    dvec3 wanted(double now);
+    dvec3 wanted(double now, double* proxy_seconds);
+    void carry_marks(double now);
     dvec3 turned_slowly(dvec3 wanted, double seconds);
-    void leave_marks(double now);
+    void leave_marks();
     void tell(double now, dvec3 force);
 
     // A dent that stays, where its surface carries it.
@@ -103,10 +102,10 @@ class Touch {
     Latest<Patch> patches_;
     Hand hand_ = {};
     bool knows_hand_ = false;
+    bool was_gone_ = false;
     dvec3 velocity_ = dvec3(0);
     dvec3 direction_ = dvec3(0);
     double time_ = 0;
-    double proxy_seconds_ = 0;
     std::vector<std::vector<Mark>> marks_;    // by surface; their room is made beforehand
     std::vector<std::vector<Dent>> lasting_;  // the marks' dents
     Felt told_ = {};

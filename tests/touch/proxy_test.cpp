@@ -322,5 +322,77 @@ TEST(Force, FeelsTheDentsThatStay) {
     EXPECT_LE(std::abs(f.x - 500 * (0.005 - g) * slope), 2e-3);
 }
 
+TEST(Proxy, ATickIsBoundedHoweverFarTheHandIs) {
+    const Mesh mesh = floor_mesh(30);
+    const Patch patch = all_of(mesh);
+    Hand1 hand(0.0005, dvec3(0, 0.02, 0));
+    for (double far : {1e3, 1e9, 1e30}) hand.to(patch, dvec3(far, -far, far));  // hangs, or not
+    EXPECT_TRUE(std::isfinite(glm::length(hand.proxy.position())));
+}
+
+// The same surface made anew, its triangles in another order: the ball stays where it is.
+TEST(Proxy, IsNotCarriedAwayByTrianglesThatChangeTheirNumbers) {
+    Mesh mesh = floor_mesh(21);
+    Hand1 hand(0.003, dvec3(0.05, 0.02, 0.05));
+    const dvec3 sunk(0.05, 0.001, 0.05);
+    hand.along(all_of(mesh), dvec3(0.05, 0.02, 0.05), sunk, 0.2);
+    std::reverse(mesh.triangles.begin(), mesh.triangles.end());
+    hand.to(all_of(mesh), sunk);
+    EXPECT_LE(glm::distance(hand.proxy.position(), dvec3(0.05, 0.003, 0.05)), 1e-6);
+}
+
+// So many sides that not all of their planes are kept: whichever way the hand leans there is a wall.
+TEST(Force, InAConeOfManySides) {
+    Mesh mesh;
+    const int sides = 32;
+    mesh.positions.push_back(vec3(0));
+    for (int i = 0; i < sides; ++i) {
+        const float a = 6.2831853f * float(i) / sides;
+        mesh.positions.emplace_back(0.05f * std::cos(a), 0.05f, 0.05f * std::sin(a));
+    }
+    for (int i = 0; i < sides; ++i) mesh.triangles.emplace_back(0, 1 + (i + 1) % sides, 1 + i);
+    const Patch patch = all_of(mesh);
+    const double radius = 0.004;
+    for (int i = 0; i < sides; ++i) {
+        const double a = 0.1 + 6.2831853 * i / sides;
+        const dvec3 over(0, 0.03, 0),
+            sunk = dvec3(0.004 * std::cos(a), radius * std::sqrt(2.0) - 0.002, 0.004 * std::sin(a));
+        Hand1 hand(radius, over);
+        hand.along(patch, over, sunk, 0.1);
+        for (int k = 0; k < 100; ++k) hand.to(patch, sunk);
+        const dvec3 f = hand.force(sunk, {.stiffness = 300});
+        EXPECT_GE(glm::length(f), 300 * 0.002) << i;
+        EXPECT_LE(glm::distance(f, 300.0 * (hand.proxy.position() - sunk)), 1e-2) << i;
+    }
+}
+
+TEST(Patch, GuessesForThreeFramesAndThenStandsStill) {
+    const Mesh mesh = floor_mesh(1);
+    const std::vector<vec3> up(mesh.positions.size(), vec3(0, 0.5f, 0)),
+        mad(mesh.positions.size(), vec3(0, 100, 0));
+    const Touchable one[] = {{mesh.positions, mesh.triangles, up}},
+                    other[] = {{mesh.positions, mesh.triangles, mad}};
+    const Patch patch(one, vec3(0), 1, 10);
+    EXPECT_LE(std::abs(patch.find(0, 0, 10.02)->corners[0].y - 0.01), 1e-8);
+    EXPECT_EQ(patch.find(0, 0, 10.02)->velocities[0].y, 0.5);
+    EXPECT_LE(std::abs(patch.find(0, 1, 12)->corners[0].y - 0.025), 1e-8);
+    EXPECT_EQ(patch.find(0, 1, 12)->velocities[0].y, 0);
+    EXPECT_EQ(patch.find(0, 0, 9)->corners[0].y, 0);
+    EXPECT_FALSE(patch.find(0, 2, 10));
+    EXPECT_FALSE(patch.find(1, 0, 10));
+    EXPECT_EQ(Patch(other).fastest(), 3);
+}
+
+TEST(Proxy, ComesBackIntoWhatThePatchKnows) {
+    const Mesh mesh = floor_mesh(3);
+    const Touchable one[] = {touchable(mesh)};
+    const Patch patch(one, vec3(0, 0.02f, 0), 0.03f);
+    Hand1 hand(0.002, dvec3(0.05, 0.02, 0));  // outside
+    hand.to(patch, dvec3(0.06, 0.02, 0));
+    EXPECT_EQ(hand.proxy.position().x, 0.05);
+    hand.to(patch, dvec3(0, 0.02, 0));
+    EXPECT_LE(std::abs(hand.proxy.position().x), 1e-9);
+}
+
 }  // namespace
 }  // namespace palpate

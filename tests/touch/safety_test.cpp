@@ -203,5 +203,47 @@ TEST(Safety, APassiveWallGivesNoEnergyOut) {
     }
 }
 
+TEST(Safety, AClockThatStopsOrTurnsBackLetsGo) {
+    for (double step : {0.1, -0.5, 1e9}) {
+        Clocked c;
+        c.arm();
+        for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 1, 0));
+        c.time += step;
+        c.hand.time = c.time;
+        EXPECT_EQ(c.safety.allow(dvec3(0, 1, 0), c.hand, dvec3(0), dvec3(0), c.time), dvec3(0));
+        EXPECT_EQ(c.safety.last_reason(), Held::stalled);
+        c.force = dvec3(0);
+        for (int i = 0; i < 100; ++i) EXPECT_EQ(c.tick(dvec3(0, 1, 0)), dvec3(0));
+    }
+}
+
+TEST(Safety, ASampleFromTheFutureIsNoBetterThanAnOldOne) {
+    Clocked c;
+    c.arm();
+    for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 1, 0));
+    c.hand.time = 1e6;
+    EXPECT_LE(c.until_nothing([&] { c.tick(dvec3(0, 1, 0), false); }), 0.025);
+    EXPECT_EQ(c.safety.last_reason(), Held::stale);
+}
+
+TEST(Safety, NoForceBridgesAPlacing) {
+    Clocked c;
+    c.arm();
+    for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 2, 0));
+    ++c.hand.placed;
+    EXPECT_EQ(c.tick(dvec3(0, 2, 0)), dvec3(0));
+}
+
+TEST(Safety, NumbersThatAreNoneTogetherAreNothing) {
+    Clocked c;
+    c.arm();
+    for (double large : {1e308, -1e308, 1e300}) {
+        for (int i = 0; i < 3; ++i) c.tick(dvec3(large, large, -large), true, dvec3(large));
+        c.hand.position = vec3(3e38f, -3e38f, 3e38f);
+        for (int i = 0; i < 3; ++i) c.tick(dvec3(0, 1, 0), true, dvec3(1e300));
+        c.hand.position = vec3(0);
+    }
+}
+
 }  // namespace
 }  // namespace palpate
