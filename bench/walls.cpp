@@ -1,0 +1,171 @@
+#include "bench/walls.h"
+#include "palpate/touch/touch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace palpate::studies {
+namespace {
+
+constexpr double stiffest_tried = 1e6;  // N/m
+
+// The largest K below which something holds.
+double largest(const std::function<bool(double)>& holds) {
+    double low = 0, high = 100;
+    while (high < stiffest_tried && holds(high)) {
+        low = high;
+        high *= 2;
+    }
+    if (low == 0 && !holds(1)) return 0;
+    while (high - low > 0.005 * high) {
+        const double middle = 0.5 * (low + high);
+        (holds(middle) ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+// ---- measured ----
+
+constexpr double depth = 0.005;        // m, at which hand and wall are in balance
+constexpr double shake = 0.001;        // m, by which the balance is moved at once
+constexpr double shaken_at = 1;        // s
+constexpr double end = 17, late = 16;  // s: what it swings in between counts
+
+// Nothing but the loop, the force law and, if any, the passivity observer.
+TouchSettings without_limits(const Wall& wall, double stiffness, double most_damping) {
+    TouchSettings settings;
+    settings.feels = {{.stiffness = stiffness, .damping = wall.damping}};
+    settings.direction_filter = 0;
+    settings.safety.small_force = std::numeric_limits<double>::infinity();
+    settings.safety.calm = settings.safety.ramp = 0;
+    settings.safety.jump = std::numeric_limits<double>::infinity();
+    settings.safety.most_damping = most_damping;
+    return settings;
+}
+
+// Half of how far the hand still swings long after it was shaken. It is pressed in so far that it neither
+// leaves the wall nor lets the damper pull, unless its motion grows.
+double last_swing(const Wall& wall, double stiffness, double most_damping) {
+    VirtualHandSettings person = wall.hand;
+    person.peak_force = person.lasting_force = 1e9f;
+    person.stiffest_wall = float(4 * stiffest_tried);
+    TouchSettings settings = without_limits(wall, stiffness, most_damping);
+    const double radius = settings.radius, pressed = 1 + stiffness / person.stiffness;
+    auto down = [&](double deep) { return vec3(0, float(radius - deep), 0); };
+    auto hand = std::make_unique<VirtualHand>(Path{{0, down(-1e-4)},
+                                                   {shaken_at, down((depth - shake) * pressed)},
+                                                   {shaken_at + 1e-6, down(depth * pressed)}},
+                                              person);
+    const VirtualHand& moved = *hand;
+    Touch touch(std::move(hand), settings);
+    const std::array<vec3, 3> corners = {vec3(-1, 0, 1), vec3(1, 0, 1), vec3(0, 0, -2)};
+    const std::array<uvec3, 1> triangle = {uvec3(0, 1, 2)};
+    const Touchable plane[] = {{corners, triangle}};
+    touch.feel(Patch(plane));
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (int i = 0; i < int(end * wall.rate); ++i) {
+        touch.tick(i / wall.rate);
+        if (i < late * wall.rate) continue;
+        least = std::min(least, moved.position().y);
+        most = std::max(most, moved.position().y);
+    }
+    return 0.5 * (most - least);
+}
+
+}  // namespace
+
+double stiffest_measured(const Wall& wall, double most_damping) {
+    // What the encoder keeps up is a few of its steps, far less than half of what the hand was shaken by.
+    return largest([&](double k) { return last_swing(wall, k, most_damping) <= 0.5 * shake; });
+}
+
+// ---- linear ----
+
+namespace {
+
+struct Motion {
+    double place = 0, speed = 0;
+};
+
+// m x'' = force - k x - c x', by its series.
+Motion moved(const VirtualHandSettings& hand, Motion from, double force, double seconds) {
+    auto rate = [&](Motion at, double push) {
+        return Motion{at.speed, (push - hand.stiffness * at.place - hand.damping * at.speed) / hand.mass};
+    };
+    Motion sum = from, term = rate(from, force);
+    double part = seconds;
+    for (int n = 2; n < 30; ++n) {
+        sum = {sum.place + part * term.place, sum.speed + part * term.speed};
+        term = rate(term, 0);
+        part *= seconds / n;
+    }
+    return sum;
+}
+
+// All that a tick hands on to the next: where the hand is and was, its speed, that as the loop knows it, and
+// the forces that are on their way, the newest first.
+using State = std::vector<double>;
+
+State next(const Wall& wall, double stiffness, const State& state) {
+    const double tick = 1 / wall.rate;
+    const double weight = 1 - std::exp(-tick / TouchSettings{}.velocity_filter);
+    const Motion at = {state[0], state[1]};
+    const double known = state[3] + weight * ((at.place - state[2]) / tick - state[3]);
+    State after(state.size());
+    after[2] = at.place;
+    after[3] = known;
+    after[4] = -stiffness * at.place - wall.damping * known;
+    std::copy(state.begin() + 4, state.end() - 1, after.begin() + 5);
+    // The delay ends within a tick: until then the force before is felt.
+    const double rest = wall.hand.delay - tick * double(state.size() - 5);
+    Motion hand = moved(wall.hand, at, state.back(), rest);
+    hand = moved(wall.hand, hand, after.back(), tick - rest);
+    after[0] = hand.place;
+    after[1] = hand.speed;
+    return after;
+}
+
+// The largest absolute eigenvalue, as the root of a high power's size: the matrix is squared again and again.
+double spectral_radius(std::vector<State> columns) {
+    const std::size_t n = columns.size();
+    double logarithm = 0, power = 1;
+    for (int i = 0; i < 40; ++i) {
+        double size = 0;
+        for (const State& column : columns)
+            for (double value : column) size = std::max(size, std::abs(value));
+        if (!(size > 0)) return 0;
+        logarithm += std::log(size) / power;
+        std::vector<State> square(n, State(n, 0));
+        for (std::size_t c = 0; c < n; ++c)
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t r = 0; r < n; ++r)
+                    square[c][r] += columns[k][r] / size * (columns[c][k] / size);
+        columns = std::move(square);
+        power *= 2;
+    }
+    return std::exp(logarithm);
+}
+
+}  // namespace
+
+double stiffest_linear(const Wall& wall) {
+    const auto on_their_way = std::size_t(wall.hand.delay * wall.rate + 1e-9) + 1;
+    return largest([&](double k) {
+        std::vector<State> columns;
+        for (std::size_t i = 0; i < 4 + on_their_way; ++i) {
+            State one(4 + on_their_way, 0);
+            one[i] = 1;
+            columns.push_back(next(wall, k, one));
+        }
+        return spectral_radius(columns) < 1;
+    });
+}
+
+double stiffest_passive(const Wall& wall) {
+    return std::max(wall.hand.damping - wall.damping, 0.0) / (0.5 / wall.rate + wall.hand.delay);
+}
+
+}  // namespace palpate::studies
