@@ -1,11 +1,18 @@
 // Prints the tables of docs/results.md that compare measurements with theory:
-//   palpate-tables [orders] [stability] [waves] [cantilever] [energy] [dents] [mappings]    all, if none is
-//   named
+//   palpate-tables [orders] [stability] [waves] [cantilever] [energy] [dents] [walls] [mappings]    all, if
+//   none is named
+//   palpate-tables --plot FILE                      draws the map of walls, SVG
 #include "bench/studies.h"
+#include "bench/walls.h"
+#include "palpate/base/error.h"
+#include "palpate/run/plot.h"
+#include "palpate/touch/safety.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -72,7 +79,7 @@ void energies() {
         "| --- |\n");
     for (Integrator integrator : {Integrator::semi_implicit_euler, Integrator::verlet,
                                   Integrator::verlet_midpoint, Integrator::rk4}) {
-        const Swing s = energy_swing(integrator, 1'000'000);
+        const studies::Swing s = energy_swing(integrator, 1'000'000);
         fmt::print("| {} | {:.3f} to {:.3f} | {:+.3f} % |\n", name_of(integrator), s.least, s.largest,
                    100 * s.drift);
     }
@@ -91,14 +98,75 @@ void dents() {
         }
 }
 
+void walls() {
+    fmt::print(
+        "| ticks a second | damping, N·s/m | passive, N/m | linear | measured | with the observer |\n"
+        "| --- | --- | --- | --- | --- | --- |\n");
+    for (double rate : {500.0, 1000.0, 2000.0})
+        for (double damping : {0.0, 1.0, 3.0, 10.0, 30.0, 100.0, 200.0}) {
+            const Wall wall{.damping = damping, .rate = rate};
+            fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} |\n", rate, damping,
+                       stiffest_passive(wall), stiffest_linear(wall), stiffest_measured(wall),
+                       stiffest_measured(wall, SafetySettings{}.most_damping));
+        }
+    fmt::print("\n| hand, kg | its damping, N·s/m | linear, N/m | measured |\n| --- | --- | --- | --- |\n");
+    for (double mass : {0.05, VirtualHandSettings{}.mass})
+        for (double damping : {0.3, 0.6, 1.0, 2.0, VirtualHandSettings{}.damping}) {
+            Wall wall;
+            wall.hand.mass = mass;
+            wall.hand.damping = damping;
+            fmt::print("| {} | {} | {:.0f} | {:.0f} |\n", mass, damping, stiffest_linear(wall),
+                       stiffest_measured(wall));
+        }
+}
+
+// The curve that a function draws from 0 to `most`.
+Curve curve(std::string name, double most, int parts, const std::function<double(double)>& height) {
+    Curve drawn{std::move(name), {}, {}};
+    for (int i = 0; i <= parts; ++i) {
+        drawn.x.push_back(most * i / parts);
+        drawn.y.push_back(height(drawn.x.back()));
+    }
+    return drawn;
+}
+
+// The curves end where they do so that they keep clear of their names.
+void draw_walls(const std::filesystem::path& path) {
+    Panel whole{"damping of the wall (N·s/m)", "stiffness (N/m)", {}}, near = whole;
+    for (double rate : {500.0, 1000.0, 2000.0}) {
+        whole.curves.push_back(curve(fmt::format("{} Hz, linear", rate), 500, 100, [&](double b) {
+            return stiffest_linear({.damping = b, .rate = rate});
+        }));
+        whole.curves.push_back(curve(fmt::format("{} Hz, measured", rate), 250, 25, [&](double b) {
+            return stiffest_measured({.damping = b, .rate = rate});
+        }));
+    }
+    const double most = 8;
+    near.curves = {
+        curve("1000 Hz, linear", most, 16, [](double b) { return stiffest_linear({.damping = b}); }),
+        curve("measured", most, 16, [](double b) { return stiffest_measured({.damping = b}); }),
+        curve("with the observer", most, 16,
+              [](double b) { return stiffest_measured({.damping = b}, SafetySettings{}.most_damping); }),
+        curve("half of the linear", most, 16, [](double b) { return 0.5 * stiffest_linear({.damping = b}); }),
+        curve("passive", 1.5 * most, 120, [](double b) { return stiffest_passive({.damping = b}); }),
+        {"the default", {0, Feel{}.damping, Feel{}.damping}, {Feel{}.stiffness, Feel{}.stiffness, 0}}};
+    write_plot("The stiffest wall on which a hand comes to rest", {whole, near}, path);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
     const std::vector<std::pair<std::string, void (*)()>> tables = {
-        {"orders", orders},          {"stability", stability}, {"waves", waves},
-        {"cantilever", cantilever},  {"energy", energies},     {"dents", dents},
-        {"mappings", print_mappings}};
+        {"orders", orders},   {"stability", stability}, {"waves", waves}, {"cantilever", cantilever},
+        {"energy", energies}, {"dents", dents},         {"walls", walls}, {"mappings", print_mappings}};
     const std::vector<std::string> wanted(arguments + 1, arguments + count);
+    if (wanted.size() == 2 && wanted[0] == "--plot") try {
+            draw_walls(wanted[1]);
+            return 0;
+        } catch (const Error& error) {
+            fmt::print(stderr, "palpate-tables: {}\n", error.what());
+            return 1;
+        }
     for (const std::string& name : wanted)
         if (std::none_of(tables.begin(), tables.end(), [&](const auto& t) { return t.first == name; })) {
             fmt::print(stderr, "palpate-tables: no table \"{}\"\n", name);

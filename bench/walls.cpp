@@ -1,4 +1,5 @@
 #include "bench/walls.h"
+
 #include "palpate/touch/touch.h"
 
 #include <algorithm>
@@ -6,6 +7,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <vector>
 
 namespace palpate::studies {
 namespace {
@@ -29,10 +32,12 @@ double largest(const std::function<bool(double)>& holds) {
 
 // ---- measured ----
 
-constexpr double depth = 0.005;        // m, at which hand and wall are in balance
-constexpr double shake = 0.001;        // m, by which the balance is moved at once
-constexpr double shaken_at = 1;        // s
-constexpr double end = 17, late = 16;  // s: what it swings in between counts
+constexpr double depth = 0.005;     // m, at which hand and wall are in balance
+constexpr double shake = 0.001;     // m, by which the balance is moved at once
+constexpr double chatter = 0.0003;  // m: ten of an encoder's steps are no motion
+constexpr double shaken_at = 1;     // s; how far it swings in the second after that
+constexpr double late = 16;         // s, and in the second after that, is compared
+constexpr double flung_off = 0.1;   // m
 
 // Nothing but the loop, the force law and, if any, the passivity observer.
 TouchSettings without_limits(const Wall& wall, double stiffness, double most_damping) {
@@ -41,14 +46,24 @@ TouchSettings without_limits(const Wall& wall, double stiffness, double most_dam
     settings.direction_filter = 0;
     settings.safety.small_force = std::numeric_limits<double>::infinity();
     settings.safety.calm = settings.safety.ramp = 0;
-    settings.safety.jump = std::numeric_limits<double>::infinity();
+    settings.safety.jump = settings.safety.fastest_hand = std::numeric_limits<double>::infinity();
     settings.safety.most_damping = most_damping;
     return settings;
 }
 
-// Half of how far the hand still swings long after it was shaken. It is pressed in so far that it neither
-// leaves the wall nor lets the damper pull, unless its motion grows.
-double last_swing(const Wall& wall, double stiffness, double most_damping) {
+struct Range {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    void take(double value) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+    double size() const { return most - least; }
+};
+
+// Whether a hand that was shaken swings less and less. It is pressed in so far that the wall does not let go
+// of it, nor the damper want to pull, unless the motion has grown until just that bounds it. But an encoder's
+// step makes a strong damper on a soft wall chatter, which stays small.
+bool dies_down(const Wall& wall, double stiffness, double most_damping) {
     VirtualHandSettings person = wall.hand;
     person.peak_force = person.lasting_force = 1e9f;
     person.stiffest_wall = float(4 * stiffest_tried);
@@ -65,26 +80,22 @@ double last_swing(const Wall& wall, double stiffness, double most_damping) {
     const std::array<uvec3, 1> triangle = {uvec3(0, 1, 2)};
     const Touchable plane[] = {{corners, triangle}};
     touch.feel(Patch(plane));
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (int i = 0; i < int(end * wall.rate); ++i) {
-        touch.tick(i / wall.rate);
-        if (i < late * wall.rate) continue;
-        least = std::min(least, moved.position().y);
-        most = std::max(most, moved.position().y);
+    Range early, in_the_end;
+    bool lets_go = false;  // in the end
+    for (int i = 0; i < int((late + 1) * wall.rate); ++i) {
+        const double now = i / wall.rate;
+        touch.tick(now);
+        const double place = moved.position().y;
+        if (!(std::abs(place) < flung_off)) return false;
+        if (now >= shaken_at && now < shaken_at + 1) early.take(place);
+        if (now < late) continue;
+        in_the_end.take(place);
+        lets_go = lets_go || moved.force().y == 0;
     }
-    return 0.5 * (most - least);
-}
-
-}  // namespace
-
-double stiffest_measured(const Wall& wall, double most_damping) {
-    // What the encoder keeps up is a few of its steps, far less than half of what the hand was shaken by.
-    return largest([&](double k) { return last_swing(wall, k, most_damping) <= 0.5 * shake; });
+    return in_the_end.size() < (lets_go ? chatter : early.size());
 }
 
 // ---- linear ----
-
-namespace {
 
 struct Motion {
     double place = 0, speed = 0;
@@ -135,8 +146,8 @@ double spectral_radius(std::vector<State> columns) {
     for (int i = 0; i < 40; ++i) {
         double size = 0;
         for (const State& column : columns)
-            for (double value : column) size = std::max(size, std::abs(value));
-        if (!(size > 0)) return 0;
+            for (double value : column) size += std::abs(value);
+        if (size == 0) return 0;
         logarithm += std::log(size) / power;
         std::vector<State> square(n, State(n, 0));
         for (std::size_t c = 0; c < n; ++c)
@@ -150,6 +161,10 @@ double spectral_radius(std::vector<State> columns) {
 }
 
 }  // namespace
+
+double stiffest_measured(const Wall& wall, double most_damping) {
+    return largest([&](double k) { return dies_down(wall, k, most_damping); });
+}
 
 double stiffest_linear(const Wall& wall) {
     const auto on_their_way = std::size_t(wall.hand.delay * wall.rate + 1e-9) + 1;
