@@ -36,20 +36,18 @@ void write_nodes(const std::vector<Model>& models, const std::vector<State>& sta
     write_text(path, text);
 }
 
-// The file of one body: where there are several, its name is in the file's.
-std::filesystem::path file_of(std::size_t body, const std::vector<Model>& models,
-                              std::filesystem::path path) {
-    if (models.size() > 1)
-        path.replace_filename(path.stem().string() + "-" + models[body].body.name +
-                              path.extension().string());
+// The file of one skin: where there are several, its name is in the file's.
+std::filesystem::path file_of(std::size_t skin, const Models& made, std::filesystem::path path) {
+    const std::size_t models = made.models.size();
+    const std::string& name = skin < models ? made.models[skin].body.name : made.stills[skin - models].name;
+    if (models + made.stills.size() > 1)
+        path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
     return path;
 }
 
-void write_surfaces(const std::vector<Model>& models, const std::vector<Skin>& skins,
-                    const std::filesystem::path& path) {
-    for (std::size_t m = 0; m < models.size(); ++m)
-        write_mesh({skins[m].positions, skins[m].normals, models[m].surface.triangles},
-                   file_of(m, models, path));
+void write_surfaces(const Models& made, const std::vector<Skin>& skins, const std::filesystem::path& path) {
+    for (std::size_t s = 0; s < skins.size(); ++s)
+        write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles}, file_of(s, made, path));
 }
 
 // ---- what is written on the way ----
@@ -59,12 +57,15 @@ class Recording {
  public:
     Recording(const RunSettings& settings, const Models& made, const Play& play, double duration) {
         if (settings.sequence.empty()) return;
+        if (made.models.empty())
+            throw Error("no body whose motion could be recorded", settings.sequence.string(),
+                        "use --surface, or a scene with a [[body]]");
         frames_apart_ = int(std::lround(std::clamp(settings.sequence_every / frame_seconds, 1.0, 1e9)));
         const auto frames = std::size_t(std::ceil(duration / frame_seconds - 1e-6));
         for (std::size_t m = 0; m < made.models.size(); ++m) {
             const Mesh& rest = made.models[m].surface;
             sequences_.push_back(make_sequence({rest.positions, play.skins()[m].normals, rest.triangles},
-                                               file_of(m, made.models, settings.sequence),
+                                               file_of(m, made, settings.sequence),
                                                frames / std::size_t(frames_apart_) + 1));
         }
     }
@@ -226,7 +227,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         report.bodies[m].elastic_energy = e.elastic;
     }
     if (!settings.nodes.empty()) write_nodes(made.models, states, settings.nodes);
-    if (!settings.surface.empty()) write_surfaces(made.models, play.skins(), settings.surface);
+    if (!settings.surface.empty()) write_surfaces(made, play.skins(), settings.surface);
     if (!settings.plot.empty()) write_plot(report, settings.plot);
     report.seconds.total = now() - start;
     if (!settings.report.empty()) write_report(report, settings.report);

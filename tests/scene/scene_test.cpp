@@ -513,7 +513,9 @@ INSTANTIATE_TEST_SUITE_P(Shipped, Tissue, ::testing::Values("brain", "head", "bo
 
 // The first file that a scene wants and this machine lacks, or nothing.
 std::string missing_file(const Scene& scene) {
-    for (const BodyRecipe& body : scene.bodies) {
+    std::vector<BodyRecipe> all = scene.bodies;
+    all.insert(all.end(), scene.surfaces.begin(), scene.surfaces.end());
+    for (const BodyRecipe& body : all) {
         std::vector<std::string> files = body.stand_ins;
         files.insert(files.begin(), body.volume.empty() ? body.surface : body.volume);
         const bool found = std::any_of(files.begin(), files.end(), [&](const std::string& file) {
@@ -542,6 +544,8 @@ TEST_P(Shipped, BuildsAsItSays) {
         for (float inverse : body.inverse_mass) held += inverse == 0;
         if (!recipe.cage) EXPECT_LT(held, body.count() / 2);
     }
+    for (const Still& still : made.stills) EXPECT_GT(still.surface.triangles.size(), 0u);
+    if (scene.bodies.empty()) return;
     if (scene.colliders.empty()) EXPECT_GT(held, 0u);  // else it may stand on one
     // The heart's vessels end openly, and the dragon may stand in for itself; notes say so.
     if (scene.bodies[0].stand_ins.empty()) EXPECT_TRUE(made.notes.empty()) << made.notes[0];

@@ -48,8 +48,8 @@ std::string compute_shader() {
         layout(std430, binding = 0) readonly buffer Now { Stored now[]; };
         layout(std430, binding = 1) writeonly buffer Next { Stored next[]; };
         int id;
-        vec3 toward(vec3 p, int l) { return now[id + pass.spring[l].offset].position.xyz - p; }
-        vec3 passing(vec3 v, int l) { return now[id + pass.spring[l].offset].velocity.xyz - v; })" +
+        vec3 toward(vec3 p, int l) { return now[id + l + 1].position.xyz - p; }
+        vec3 passing(vec3 v, int l) { return now[id + l + 1].velocity.xyz - v; })" +
            eyes() + R"(
         void main() {
             id = int(gl_GlobalInvocationID.x);
@@ -66,8 +66,8 @@ std::string feedback_shader() {
         layout(binding = 0) uniform samplerBuffer positions;
         out vec3 next_position, next_velocity;
         layout(binding = 1) uniform samplerBuffer velocities;
-        vec3 toward(vec3 p, int l) { return texelFetch(positions, gl_VertexID + pass.spring[l].offset).xyz - p; }
-        vec3 passing(vec3 v, int l) { return texelFetch(velocities, gl_VertexID + pass.spring[l].offset).xyz - v; })" +
+        vec3 toward(vec3 p, int l) { return texelFetch(positions, gl_VertexID + l + 1).xyz - p; }
+        vec3 passing(vec3 v, int l) { return texelFetch(velocities, gl_VertexID + l + 1).xyz - v; })" +
            eyes() + R"(
         void main() {
             Node node = Node(position.xyz, velocity, position.w);
