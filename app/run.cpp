@@ -2,7 +2,9 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
+#include "app/view.h"
 #include "palpate/base/error.h"
+#include "palpate/run/experiment.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -19,7 +21,7 @@ struct Arguments {
     std::optional<std::string> rest;
     std::vector<Change> changes;
     int threads = 0;  // 0: as the scene says
-    bool force = false;
+    bool force = false, headless = false;
     RunSettings settings;
 };
 
@@ -80,6 +82,30 @@ void print_summary(const Report& report) {
     for (const std::string& note : report.notes) fmt::print("  note: {}\n", note);
 }
 
+// Whether anything is asked for that a window does not give: files, or an end.
+bool wants_files(const Arguments& arguments) {
+    const RunSettings& s = arguments.settings;
+    for (const auto* file : {&s.video, &s.images, &s.report, &s.plot, &s.nodes, &s.surface, &s.sequence})
+        if (!file->empty()) return true;
+    return s.frames || s.steps || arguments.rest;
+}
+
+// What a recording did, done again; says whether it came out the same.
+void replay(const std::string& file) {
+    const Recording recording = read_recording(file);
+    Experiment experiment(prepare(recording.scene, recording.changes, terminal_progress()));
+    end_progress();
+    while (experiment.replay(recording)) {}
+    const std::string print = experiment.fingerprint();
+    fmt::print("{}\n", recording.scene.name);
+    print_table({{"frames", grouped(recording.frames)},
+                 {"inputs", grouped((long long)recording.inputs.size())},
+                 {"state at the end", print == recording.fingerprint ? "the same to the bit" : "another"}});
+    if (print != recording.fingerprint)
+        throw Error("the state after the last frame is another than when it was recorded", file,
+                    "replay it on the same backend, with the same files and the same version");
+}
+
 void run_scene(Arguments& arguments) {
     if (!arguments.backend.empty())
         arguments.changes.push_back("simulation.backend=\"" + arguments.backend + "\"");
@@ -89,6 +115,8 @@ void run_scene(Arguments& arguments) {
         arguments.changes.push_back("simulation.integrator=\"" + arguments.integrator + "\"");
     set_size(arguments.size, arguments.settings);
     if (arguments.rest) set_rest(*arguments.rest, arguments.settings);
+    if (!arguments.headless && !wants_files(arguments)) return view(arguments.scene, arguments.changes);
+    if (arguments.scene.ends_with(".json")) return replay(arguments.scene);
     Scene scene = read_scene(arguments.scene, arguments.changes);
     scene.simulation.force = arguments.force;
 
@@ -107,8 +135,14 @@ void run_scene(Arguments& arguments) {
 void add_run(CLI::App& app) {
     auto arguments = std::make_shared<Arguments>();
     RunSettings& settings = arguments->settings;
-    CLI::App* command = app.add_subcommand("run", "Run a scene, off screen, and write what is asked for");
-    command->add_option("scene", arguments->scene, "a TOML file, or the name of a shipped scene")->required();
+    CLI::App* command = app.add_subcommand(
+        "run", "Open a scene in a window; or run it off screen, and write what is asked for");
+    command
+        ->add_option("scene", arguments->scene,
+                     "a TOML file, the name of a shipped scene, or a recording (.json)")
+        ->required();
+    command->add_flag("--headless", arguments->headless,
+                      "run it off screen, as any option that writes a file or says when to end does");
     command->add_option("--backend", arguments->backend, "see: palpate list backends");
     command->add_option("--threads", arguments->threads, "that simulate and map [1]")
         ->check(CLI::Range(1, most_threads));

@@ -8,13 +8,16 @@ build_packages=(
     libopenvdb-dev libboost-iostreams-dev libtbb-dev                          # solids
     libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures
     libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver
+    libglfw3-dev libimgui-dev fonts-dejavu-core                               # the viewer
     libtomlplusplus-dev libcli11-dev nlohmann-json3-dev                       # scenes, command line, reports
     libgtest-dev                                                              # tests
 )
 data_packages=(mricron-data)  # the brain and the head
 film_packages=(ffmpeg)
 fuzz_packages=(clang libclang-rt-14-dev)           # scripts/fuzz
-check_packages=(doxygen assimp-testmodels libbullet-dev)  # the headers' pages; odd files; what palpate bench compares with
+check_packages=(  # the headers' pages; odd files; what palpate bench compares with; a display without a screen, and its events
+    doxygen assimp-testmodels libbullet-dev xvfb libxtst-dev
+)
 
 need_packages() {
     local missing=() name

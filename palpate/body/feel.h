@@ -7,6 +7,8 @@ namespace palpate {
 struct Friction {
     double still = 0.3;    // while the tip sticks
     double sliding = 0.2;  // while it slips; not more than that
+
+    bool operator==(const Friction&) const = default;
 };
 
 /// How a surface feels, and what a touch leaves on it.
@@ -17,6 +19,8 @@ struct Feel {
     double dent_width = 0.01;  // m, the standard deviation of the dent under a tip (2007, section IV-A)
     double yield = std::numeric_limits<double>::infinity();  // m: a dent springs back by no more than that;
                                                              // the rest stays, and is felt
+
+    bool operator==(const Feel&) const = default;
 };
 
 }  // namespace palpate

@@ -25,6 +25,8 @@ struct SpringKinds {
     float structural = 0;  // to the next node along an axis: resists stretching
     float shear = 0;       // to the next node across a diagonal: resists shearing
     float flexion = 0;     // to the next but one along an axis: resists bending
+
+    bool operator==(const SpringKinds&) const = default;
 };
 
 /// What a body is made of. Give one of the first two and one of the next two; a zero says "not given".
@@ -36,6 +38,8 @@ struct Material {
     float damping = 0;         // 1/s; free motion decays as exp(-damping · t / 2)
     float link_damping = 0;    // s; each spring resists its stretching with this × its stiffness, N s/m
     Links links = Links::automatic;
+
+    bool operator==(const Material&) const = default;
 };
 
 }  // namespace palpate

@@ -27,6 +27,8 @@ struct RepairSettings {
     SolidBy solid = SolidBy::walls;  // ignored for a sheet
     float voxel = 0;                 // m; for what voxels make. 0: 1/300 of the longest side
     std::string name = "the mesh";   // what errors call it
+
+    bool operator==(const RepairSettings&) const = default;
 };
 
 /// One step that changed the mesh: {"vertices welded", 214}.

@@ -1,5 +1,6 @@
 #include "palpate/render/renderer.h"
 
+#include "palpate/base/error.h"
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
 #include "palpate/render/culling.h"
@@ -11,8 +12,11 @@
 #include "palpate/render/reach.h"
 #include "palpate/render/shadow_map.h"
 #include "palpate/render/target.h"
+#include "palpate/render/thinned.h"
 #include "palpate/render/unit_ball.h"
 #include "palpate/render/view.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -29,8 +33,10 @@ constexpr int shadow_size = 1024;    // pixels
 constexpr float wire_width = 1.3f;   // pixels
 constexpr float wire_lift = 0.005f;  // in radii of the things; see wires.vert
 constexpr float ball_shine = 0.4f;
+constexpr std::size_t few_triangles = 24'000, few_of_ball = 1'280;
 constexpr std::size_t cluster_vertices = 64, cluster_faces = 124;
 constexpr GLuint colour_map_unit = 4, normal_map_unit = 5;  // as in surface.frag
+constexpr GLsizei texture_units = 6;
 
 // The attributes of placed.glsl and surface.vert.
 enum Attribute : GLuint {
@@ -40,12 +46,17 @@ enum Attribute : GLuint {
     uv_attribute
 };
 
+struct Triangles {
+    gl::Buffer corners;
+    GLsizei count = 0;  // of corners
+};
+
 // What does not move of a mesh.
 struct Model {
-    gl::Buffer triangles;
+    Triangles triangles;
+    Triangles few;  // in their place, where not every triangle is drawn
     gl::Buffer openness, uvs;
     bool has_uvs = false;
-    GLsizei corners = 0;
     std::size_t vertices = 0;
     bool closed = false;  // then nobody sees its triangles from behind
     // Of one that was added with an embedding:
@@ -82,13 +93,17 @@ bool closed(const Mesh& mesh) {
     return there == back && volume(mesh) > 0;
 }
 
-Model model(const Mesh& mesh, gl::Buffer openness) {
+Triangles buffered(const std::vector<uvec3>& list) {
+    return {gl::Buffer(list), static_cast<GLsizei>(3 * list.size())};
+}
+
+Model model(const Mesh& mesh, gl::Buffer openness, std::size_t few = few_triangles) {
     Model made;
-    made.triangles = gl::Buffer(mesh.triangles);
+    made.triangles = buffered(mesh.triangles);
+    made.few = buffered(thinned(mesh, few));
     made.openness = std::move(openness);
     made.has_uvs = !mesh.uvs.empty();
     made.uvs = gl::Buffer(mesh.uvs);
-    made.corners = static_cast<GLsizei>(3 * mesh.triangles.size());
     made.vertices = mesh.positions.size();
     made.closed = closed(mesh);
     return made;
@@ -120,7 +135,6 @@ void attach(const Model& model, GLuint corners) {
     glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
     glVertexArrayVertexBuffer(corners, uv_attribute, model.uvs.name(), 0, sizeof(vec2));
     (model.has_uvs ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(corners, uv_attribute);
-    glVertexArrayElementBuffer(corners, model.triangles.name());
 }
 
 gl::Sampler sampler_of_maps() {
@@ -186,17 +200,58 @@ Extent reach(const Picture& picture, const Extent& things) {
     return all;
 }
 
+void check(const Quality& quality) {
+    if (quality.samples != 1 && quality.samples != 2 && quality.samples != 4 && quality.samples != 8)
+        throw Error(fmt::format("{} samples of a pixel cannot be drawn", quality.samples), "Quality",
+                    "choose 1, 2, 4 or 8");
+    if (!(quality.scale >= 0.25f && quality.scale <= 1))
+        throw Error(fmt::format("{} times as many pixels cannot be drawn", quality.scale), "Quality",
+                    "choose 0.25 to 1");
+}
+
+Target target(Offscreen size, const Quality& quality) {
+    check_size(size.width, size.height);
+    auto scaled = [&](int pixels) {
+        return std::max(1, static_cast<int>(std::lround(quality.scale * static_cast<float>(pixels))));
+    };
+    return Target(scaled(size.width), scaled(size.height), quality.samples);
+}
+
+// A context may be shared with others who draw in it, such as a window's buttons. At the end of a visit they
+// find their framebuffers and viewport bound again, and off what few of them think of turning off.
+class Visit {
+ public:
+    Visit() {
+        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn_);
+        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_);
+        glGetIntegerv(GL_VIEWPORT, viewport_);
+    }
+    ~Visit() {
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(drawn_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_));
+        glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+        glDisable(GL_FRAMEBUFFER_SRGB);
+        glDisable(GL_DEPTH_TEST);
+        glBindSamplers(0, texture_units, nullptr);
+    }
+    Visit(const Visit&) = delete;
+    Visit& operator=(const Visit&) = delete;
+
+ private:
+    GLint drawn_ = 0, read_ = 0, viewport_[4] = {};
+};
+
 }  // namespace
 
 struct Renderer::Parts {
     std::optional<gl::Context> own;  // first, because all the rest lives in it
     const gl::Context& context;
+    Offscreen size;
+    Quality quality;
     Target target;
     ShadowMap shadow{shadow_size};
     Openness openness;
-
-    Programs programs;
-    std::map<std::pair<std::string, Dented>, SurfacePrograms> others;  // by the text that maps, and the dents
+    std::map<bool, Programs> all_programs;  // with shadows and without
 
     gl::VertexArray surface_corners = corners_of_surfaces();
     gl::VertexArray no_corners;  // for shaders that make their own
@@ -208,24 +263,28 @@ struct Renderer::Parts {
     Moving ball_shape;
     gl::Buffer wire_points, wire_lines;
 
-    Parts(Offscreen size, const gl::Context* given);
+    Parts(Offscreen wanted, const gl::Context* given);
     ~Parts() { context.make_current_or_not(); }
 
+    Programs& programs() { return all_programs.try_emplace(quality.shadows, quality.shadows).first->second; }
+    const Triangles& triangles(const Model& model) const {
+        return quality.every_triangle ? model.triangles : model.few;
+    }
     void draw(const Picture& picture);
     std::vector<Bounds> boxes(const std::vector<Surface>& surfaces) const;
     void upload(const std::vector<Surface>& surfaces);
     void upload(const Surface& surface, Moving& to) const;
     void cast_shadows(const Picture& picture, const Lighting& light);
-    void draw_background() const;
+    void draw_background();
     const SurfacePrograms& programs_for(const Model& model, const Moving& shape, const Look& look);
     void draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass);
-    void draw_balls(const std::vector<Ball>& balls, const Pass& pass) const;
+    void draw_balls(const std::vector<Ball>& balls, const Pass& pass);
     void bind(const Model& model, const Moving& shape) const;
     void set_look(const gl::Program& program, const Look& look, const Model& model,
                   const Moving& shape) const;
     void draw_triangles(const Model& model) const;
     void draw_wires(const Wires& some, const View& seen, const Extent& things);
-    void draw_ground(const Ground& one, const View& seen, const Extent& things) const;
+    void draw_ground(const Ground& one, const View& seen, const Extent& things);
 };
 
 // The members made after the context need it current.
@@ -235,10 +294,11 @@ const gl::Context& current(std::optional<gl::Context>& own, const gl::Context* g
     return context;
 }
 
-Renderer::Parts::Parts(Offscreen size, const gl::Context* given)
-    : context(current(own, given)), target(size.width, size.height) {
+Renderer::Parts::Parts(Offscreen wanted, const gl::Context* given)
+    : context(current(own, given)), size(wanted), target(palpate::target(size, quality)) {
+    programs();  // a driver that cannot compile them says so here
     const Mesh mesh = unit_ball();
-    ball_model = model(mesh, wide_open(mesh.positions.size()));
+    ball_model = model(mesh, wide_open(mesh.positions.size()), few_of_ball);
     ball_shape.positions = gl::Buffer(mesh.positions);
     ball_shape.normals = gl::Buffer(mesh.normals);
 }
@@ -246,17 +306,18 @@ Renderer::Parts::Parts(Offscreen size, const gl::Context* given)
 void Renderer::Parts::draw(const Picture& picture) {
     const std::vector<Bounds> around = boxes(picture.surfaces);
     const Extent things = extent(picture, around);
-    const View seen = view(picture.camera, target.aspect(), reach(picture, things));
+    const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+    const View seen = view(picture.camera, aspect, reach(picture, things));
     const Lighting light = lighting(picture, around, shadow_size);
     auto begin = [&](const SurfacePrograms& some) -> const gl::Program& {
         tell(some.shown, seen, light, picture.balls.size());
         return some.shown;
     };
     const Pass shown{seen, begin, picture.culls};
-    tell(programs.ground, seen, light, light.round.size());
+    tell(programs().ground, seen, light, light.round.size());
 
     upload(picture.surfaces);
-    cast_shadows(picture, light);
+    if (quality.shadows) cast_shadows(picture, light);
     target.begin();
     glEnable(GL_DEPTH_TEST);
     draw_surfaces(picture.surfaces, shown);
@@ -316,9 +377,10 @@ void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light
     shadow.bind();
 }
 
-void Renderer::Parts::draw_background() const {
-    programs.background.use();
-    programs.background.set("picture", vec2(target.width(), target.height()));
+void Renderer::Parts::draw_background() {
+    const gl::Program& background = programs().background;
+    background.use();
+    background.set("picture", vec2(target.width(), target.height()));
     glDepthFunc(GL_LEQUAL);  // where nothing is yet, which is as far
     glBindVertexArray(no_corners.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -327,14 +389,12 @@ void Renderer::Parts::draw_background() const {
 
 const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const Moving& shape,
                                                      const Look& look) {
-    const Dented dented = shape.dents.count() == 0 ? Dented::no
-                          : look.coarse_dents      ? Dented::at_vertices
-                                                   : Dented::at_fragments;
-    const bool placed = shape.nodes.positions == 0;
-    if (placed && dented == Dented::no) return programs.placed;
-    const std::string text =
-        placed ? placed_glsl : "#version 450 core\n" + model.embedding->shader(shape.nodes.width > 0);
-    return others.try_emplace({text, dented}, text, dented).first->second;
+    Features features{.images = look.colour_map >= 0 || look.normal_map >= 0 || look.shows_normals};
+    if (shape.dents.count() > 0)
+        features.dented = look.coarse_dents ? Dented::at_vertices : Dented::at_fragments;
+    if (shape.nodes.positions == 0) return programs().surface(placed_glsl, features);
+    return programs().surface("#version 450 core\n" + model.embedding->shader(shape.nodes.width > 0),
+                              features);
 }
 
 void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass) {
@@ -344,7 +404,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
         bind(model, moving[i]);
         const bool dented = moving[i].dents.count() > 0;
         if (dented) moving[i].dents.bind(SurfacePrograms::dents_binding);
-        const bool culls = pass.culls && moving[i].nodes.positions != 0;
+        const bool culls = pass.culls && quality.every_triangle && moving[i].nodes.positions != 0;
         // A dent turns triangles as it likes, but takes them no further than that.
         if (culls)
             model.culling->find(pass.view, model.closed && !dented, moving[i].nodes.width > 0,
@@ -363,8 +423,8 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
     }
 }
 
-void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pass) const {
-    const gl::Program& program = pass.begin(programs.placed);
+void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pass) {
+    const gl::Program& program = pass.begin(programs().placed);
     bind(ball_model, ball_shape);
     program.use();
     set_look(program, {.shine = ball_shine}, ball_model, ball_shape);
@@ -377,8 +437,10 @@ void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pas
 }
 
 void Renderer::Parts::bind(const Model& model, const Moving& shape) const {
-    if (shape.nodes.positions != 0) return model.embedding->bind(shape.nodes);
-    const GLuint corners = surface_corners.name();
+    const bool placed = shape.nodes.positions == 0;
+    const GLuint corners = placed ? surface_corners.name() : model.embedding->vertex_array();
+    glVertexArrayElementBuffer(corners, triangles(model).corners.name());
+    if (!placed) return model.embedding->bind(shape.nodes);
     glVertexArrayVertexBuffer(corners, position_attribute, shape.positions.name(), 0, sizeof(vec3));
     glVertexArrayVertexBuffer(corners, normal_attribute, shape.normals.name(), 0, sizeof(vec3));
     attach(model, corners);
@@ -404,7 +466,7 @@ void Renderer::Parts::set_look(const gl::Program& program, const Look& look, con
 }
 
 void Renderer::Parts::draw_triangles(const Model& model) const {
-    glDrawElements(GL_TRIANGLES, model.corners, GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, triangles(model).count, GL_UNSIGNED_INT, nullptr);
 }
 
 // Twice: where nothing hides the lines, and then faintly the others.
@@ -414,7 +476,7 @@ void Renderer::Parts::draw_wires(const Wires& some, const View& seen, const Exte
     wire_lines.upload(some.lines);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, wire_points.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, wire_lines.name());
-    const gl::Program& wires = programs.wires;
+    const gl::Program& wires = programs().wires;
     wires.use();
     wires.set("to_clip", seen.to_clip);
     wires.set("eye", seen.eye);
@@ -440,12 +502,12 @@ void Renderer::Parts::draw_wires(const Wires& some, const View& seen, const Exte
     glDepthFunc(GL_LESS);
 }
 
-void Renderer::Parts::draw_ground(const Ground& one, const View& seen, const Extent& things) const {
+void Renderer::Parts::draw_ground(const Ground& one, const View& seen, const Extent& things) {
     const Square part = square(one, things);
     const bool from_above = dot(vec3(seen.eye) - seen.eye.w * part.middle, part.upright) > 0;
     if (!from_above) return;
     const mat3 frame = axes(part.upright, seen.up);
-    const gl::Program& ground = programs.ground;
+    const gl::Program& ground = programs().ground;
     ground.use();
     ground.set("upright", part.upright);
     ground.set("middle", part.middle);
@@ -461,9 +523,30 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
+void Renderer::resize(Offscreen size) {
+    parts_->context.make_current();
+    parts_->target = target(size, parts_->quality);
+    parts_->size = size;
+}
+
+void Renderer::set(const Quality& quality) {
+    check(quality);
+    parts_->context.make_current();
+    parts_->target = target(parts_->size, quality);
+    parts_->quality = quality;
+}
+
+void Renderer::clear() {
+    parts_->context.make_current();
+    parts_->models.clear();
+    parts_->moving.clear();
+    parts_->maps.clear();
+}
+
 int Renderer::add(const Mesh& mesh) {
     parts_->context.make_current();
-    parts_->models.push_back(model(mesh, parts_->openness.measure(mesh, parts_->programs.placed.depth)));
+    const Visit visit;
+    parts_->models.push_back(model(mesh, parts_->openness.measure(mesh, parts_->programs().placed.depth)));
     return static_cast<int>(parts_->models.size()) - 1;
 }
 
@@ -471,7 +554,7 @@ int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
     const int number = add(mesh);
     Model& model = parts_->models.back();
     const Clusters groups = clusters(mesh, cluster_vertices, cluster_faces);
-    model.triangles = gl::Buffer(groups.triangles);
+    model.triangles = buffered(groups.triangles);
     model.embedding.emplace(embedding);
     model.culling.emplace(groups, mesh, embedding);
     model.reach = palpate::reach(mesh, embedding);
@@ -490,7 +573,13 @@ int Renderer::add(const Image& image, Texels texels) {
 
 void Renderer::draw(const Picture& picture) {
     parts_->context.make_current();
+    const Visit visit;
     parts_->draw(picture);
+}
+
+void Renderer::show(ivec2 corner) const {
+    parts_->context.make_current();
+    parts_->target.show(corner, corner + ivec2(parts_->size.width, parts_->size.height));
 }
 
 Image Renderer::image() const {

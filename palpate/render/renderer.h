@@ -18,6 +18,18 @@ struct Offscreen {
     int height = 720;
 };
 
+/// How well pictures are drawn, and so how fast.
+struct Quality {
+    int samples = 4;      // of each pixel, for smooth edges: 1, 2, 4 or 8, or as many as the driver has
+    bool shadows = true;  // that things cast on themselves and each other
+    float scale = 1;      // 0.25 to 1: drawn with so many times as many pixels each way
+    bool every_triangle = true;  // of a mesh; or at most about 24,000, between vertices that it has
+};
+
+/// For things that move where the CPU has to draw them.
+inline constexpr Quality draft_quality{
+    .samples = 1, .shadows = false, .scale = 0.5f, .every_triangle = false};
+
 /// What was left out of a surface before it was mapped, and what was not.
 struct Culled {
     std::size_t clusters = 0, clusters_drawn = 0;
@@ -40,6 +52,19 @@ class Renderer {
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
+    /// Pictures have that size from now on. What was added stays; image() is black until the next frame.
+    /// Throws Error if it cannot draw pictures of that size.
+    void resize(Offscreen size);
+
+    /// Pictures have that quality from now on; the first of each kind takes longer, since its programs are
+    /// compiled. What was added stays; image() is black until the next frame. Throws Error for numbers that a
+    /// quality cannot have.
+    void set(const Quality& quality);
+
+    /// Forgets all meshes and images that were added: the next has the number 0 again. What was compiled to
+    /// draw them stays.
+    void clear();
+
     /// Keeps what does not move of a mesh: its triangles, and how deep each vertex lies in a groove, which
     /// takes about a second for 100,000 triangles on a software driver. Returns the number by which
     /// Surface::mesh names it.
@@ -55,11 +80,20 @@ class Renderer {
     int add(const Image& image, Texels texels = Texels::colours);
 
     /// Draws one frame. Same picture, same pixels. Odd pictures are drawn as well as they can be: nothing in
-    /// them, a camera that looks at its own eye, points that are not finite.
+    /// them, a camera that looks at its own eye, points that are not finite. For others who draw in the
+    /// context: framebuffers and viewport are afterwards bound as before, no sampler is, and depth test,
+    /// blending, culling and GL_FRAMEBUFFER_SRGB are off.
     void draw(const Picture& picture);
 
-    /// The last frame that was drawn; black before the first.
+    /// The last frame that was drawn; black before the first. Where Quality::scale is less than 1 it has
+    /// fewer pixels, as they were drawn.
     Image image() const;
+
+    /// Puts the last frame into the framebuffer that is bound for drawing in the renderer's context, such as
+    /// a window's, with its lower left corner at `corner`: in full size, so stretched where it has fewer
+    /// pixels. That framebuffer has one sample a pixel; whether it is sRGB or not, it gets the bytes of
+    /// image(). Leaves GL_FRAMEBUFFER_SRGB off.
+    void show(ivec2 corner) const;
 
     /// What was left out of a mesh when it was last drawn by its nodes, not counting its shadow. Reads that
     /// back, so this is for measurements.

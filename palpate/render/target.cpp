@@ -9,12 +9,17 @@
 namespace palpate {
 namespace {
 
-constexpr int samples = 4;
-
 // Checked before anything is made, so that no texture of an impossible size is asked for.
 int checked_width(int width, int height) {
     check_size(width, height);
     return width;
+}
+
+int possible(int samples) {
+    GLint colour = 0, depth = 0;
+    glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &colour);
+    glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &depth);
+    return std::min({samples, colour, depth});
 }
 
 }  // namespace
@@ -27,11 +32,13 @@ void check_size(int width, int height) {
                     fmt::format("choose 1 to {} pixels each way", most));
 }
 
-Target::Target(int width, int height)
-    : samples_(GL_SRGB8_ALPHA8, checked_width(width, height), height, samples),
-      depth_(GL_DEPTH_COMPONENT32F, width, height, samples),
-      pixels_(GL_SRGB8_ALPHA8, width, height) {
-    glNamedFramebufferTexture(drawn_.name(), GL_COLOR_ATTACHMENT0, samples_.name(), 0);
+Target::Target(int width, int height, int samples)
+    : pixels_(GL_SRGB8_ALPHA8, checked_width(width, height), height),
+      depth_(GL_DEPTH_COMPONENT32F, width, height, possible(samples)) {
+    samples = possible(samples);
+    if (samples > 1) samples_.emplace(GL_SRGB8_ALPHA8, width, height, samples);
+    const GLuint drawn_into = samples_ ? samples_->name() : pixels_.name();
+    glNamedFramebufferTexture(drawn_.name(), GL_COLOR_ATTACHMENT0, drawn_into, 0);
     glNamedFramebufferTexture(drawn_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
     glNamedFramebufferTexture(shown_.name(), GL_COLOR_ATTACHMENT0, pixels_.name(), 0);
     if (glCheckNamedFramebufferStatus(drawn_.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -51,6 +58,7 @@ void Target::begin() const {
 }
 
 void Target::end() const {
+    if (!samples_) return;
     glBlitNamedFramebuffer(drawn_.name(), shown_.name(), 0, 0, width(), height(), 0, 0, width(), height(),
                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
@@ -65,6 +73,16 @@ Image Target::read(const gl::Context& context) const {
     for (int above = 0, below = image.height - 1; above < below; ++above, --below)
         std::swap_ranges(row + bytes * above, row + bytes * (above + 1), row + bytes * below);
     return image;
+}
+
+// While GL_FRAMEBUFFER_SRGB is off, a blit neither decodes what it reads nor encodes what it writes.
+void Target::show(ivec2 low, ivec2 high) const {
+    GLint bound = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    const bool stretched = high - low != ivec2(width(), height());
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glBlitNamedFramebuffer(shown_.name(), static_cast<GLuint>(bound), 0, 0, width(), height(), low.x, low.y,
+                           high.x, high.y, GL_COLOR_BUFFER_BIT, stretched ? GL_LINEAR : GL_NEAREST);
 }
 
 }  // namespace palpate

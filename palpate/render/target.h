@@ -1,19 +1,23 @@
 #pragma once
+#include "palpate/base/vectors.h"
 #include "palpate/gl/context.h"
 #include "palpate/gl/texture.h"
 #include "palpate/mesh/image.h"
+
+#include <optional>
 
 namespace palpate {
 
 /// Throws Error if the driver has no images of that size, in pixels.
 void check_size(int width, int height);
 
-/// An image in the GPU's memory to draw into, with four samples a pixel for smooth edges. Light in it is
+/// An image in the GPU's memory to draw into, with several samples a pixel for smooth edges. Light in it is
 /// linear; the GPU turns it into sRGB where it stores it.
 class Target {
  public:
-    /// In pixels. Throws Error if the driver has no images of that size.
-    Target(int width, int height);
+    /// In pixels. Throws Error if the driver has no images of that size. If it has not that many samples,
+    /// they are as many as it has.
+    Target(int width, int height, int samples);
 
     /// Clears it and makes it what is drawn into.
     void begin() const;
@@ -24,12 +28,16 @@ class Target {
     /// What was drawn before the last end().
     Image read(const gl::Context& context) const;
 
+    /// Copies that, byte for byte, into the framebuffer that is bound for drawing, stretched from the corner
+    /// `low` to `high`. Leaves GL_FRAMEBUFFER_SRGB off.
+    void show(ivec2 low, ivec2 high) const;
+
     int width() const { return pixels_.width(); }
     int height() const { return pixels_.height(); }
-    float aspect() const { return static_cast<float>(width()) / static_cast<float>(height()); }
 
  private:
-    gl::Texture samples_, depth_, pixels_;
+    gl::Texture pixels_, depth_;
+    std::optional<gl::Texture> samples_;  // where they are more than one a pixel
     gl::Framebuffer drawn_, shown_;
 };
 

@@ -28,7 +28,7 @@ class Grip {
  private:
     void take_hold(const std::vector<Model>& models, const std::vector<std::unique_ptr<Solver>>& solvers);
 
-    const ToolRecipe& recipe_;
+    ToolRecipe recipe_;
     std::size_t body_ = 0;
     int node_ = -1;
     vec3 origin_ = vec3(0);  // of the path

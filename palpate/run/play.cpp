@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -47,14 +48,16 @@ std::vector<vec3> places(const Moved& moved, const Path& path, const Body& body,
 struct Play::Acting {
     struct OnBody {
         std::vector<Drag> drags;
-        std::vector<std::size_t> tool_of_drag;
+        std::vector<std::size_t> tool_of_drag;  // the scene's come first; then those of hands,
+        std::vector<std::size_t> pull_of_drag;  // one of Hands::pulls each
         std::vector<Move> moves;
     };
     std::vector<Press> presses;
-    std::vector<std::size_t> tool_of_press;
+    std::vector<std::size_t> tool_of_press;  // likewise the scene's first
     std::vector<OnBody> bodies;
     std::vector<std::vector<vec3>> places;  // that the moves lead to
     std::vector<Motion> colliders;
+    std::size_t pulls = 0;  // of hands, on all bodies
     vec3 wind = vec3(0);
 };
 
@@ -90,9 +93,7 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
                                 "between the nodes; use more nodes",
                                 tool.name, model.body.name));
     }
-    std::vector<Feel> feels;
-    for (const BodyRecipe& recipe : scene.bodies) feels.push_back(recipe.feel);
-    for (const BodyRecipe& recipe : scene.surfaces) feels.push_back(recipe.feel);
+    const std::vector<Feel> feels = feels_of(scene);
     for (const Still& still : made.stills) {
         Report::Body& body = report.bodies.emplace_back();
         body.name = still.name;
@@ -137,6 +138,35 @@ std::vector<State> Play::states() const {
     return states;
 }
 
+std::vector<State> Play::save() const {
+    std::vector<State> states;
+    for (const auto& solver : solvers_) states.push_back(solver->save());
+    return states;
+}
+
+void Play::restore(const std::vector<State>& states) {
+    for (std::size_t m = 0; m < solvers_.size(); ++m) solvers_[m]->restore(states[m]);
+    mapped_ = false;
+    before_.clear();  // how fast skins moved is not known any more
+    for (auto& velocities : velocities_) velocities.clear();
+}
+
+void Play::take_tools(Play& from) {
+    assert(from.handles_.size() == handles_.size());
+    handles_ = std::move(from.handles_);
+    for (auto& handle : handles_)
+        if (auto* tip = std::get_if<Tip>(&handle)) tip->lies_over(skins());
+    tools_ = from.tools_;
+    pushes_ = from.pushes_;
+    time_ = from.time_;
+}
+
+std::size_t Play::memory() const {
+    std::size_t bytes = 0;
+    for (const auto& solver : solvers_) bytes += solver->memory();
+    return bytes;
+}
+
 std::vector<Motion> Play::colliders(double time, double seconds) const {
     std::vector<Motion> motions(scene_.colliders.size());
     for (std::size_t c = 0; c < motions.size(); ++c)
@@ -174,9 +204,9 @@ void Play::probe(double time, double seconds) {
             one->advance(time, seconds, skins_, velocities_, !made_.models.empty());
 }
 
-bool Play::advance(double time, double seconds) {
+bool Play::advance(double time, double seconds, const Hands& hands) {
     probe(time, seconds);
-    const Acting on = acting(time, seconds);
+    const Acting on = acting(time, seconds, hands);
     {
         Timed timed(report_.seconds.simulate);
         if (!step(seconds, on)) return false;
@@ -188,7 +218,7 @@ bool Play::advance(double time, double seconds) {
     return true;
 }
 
-Play::Acting Play::acting(double time, double seconds) {
+Play::Acting Play::acting(double time, double seconds, const Hands& hands) {
     Acting on;
     on.bodies.resize(solvers_.size());
     for (std::size_t t = 0; t < handles_.size(); ++t) {
@@ -203,6 +233,13 @@ Play::Acting Play::acting(double time, double seconds) {
             on.bodies[grip->body()].tool_of_drag.push_back(t);
         }
     }
+    on.presses.insert(on.presses.end(), hands.presses.begin(), hands.presses.end());
+    for (std::size_t p = 0; p < hands.pulls.size(); ++p) {
+        Acting::OnBody& body = on.bodies[hands.pulls[p].body];
+        body.drags.push_back(hands.pulls[p].drag);
+        body.pull_of_drag.push_back(p);
+    }
+    on.pulls = hands.pulls.size();
     for (std::size_t i = 0; i < made_.moves.size(); ++i) {
         const Moved& moved = made_.moves[i];
         on.places.push_back(
@@ -244,12 +281,18 @@ void Play::map() const {
 void Play::record(const Acting& on, double time, double seconds) {
     std::vector<dvec3> impulses(handles_.size(), dvec3(0));
     tools_.assign(handles_.size(), std::nullopt);
+    pushes_.presses.assign(on.presses.size() - on.tool_of_press.size(), dvec3(0));
+    pushes_.pulls.assign(on.pulls, dvec3(0));
     for (std::size_t t : on.tool_of_press) tools_[t] = {std::get<Tip>(handles_[t]).centre(time), {}};
     for (std::size_t m = 0; m < solvers_.size(); ++m) {
         const Stats& stats = stats_[m];
-        for (std::size_t p = 0; p < on.presses.size(); ++p)
-            impulses[on.tool_of_press[p]] += stats.reactions[p];
-        for (std::size_t d = 0; d < on.bodies[m].drags.size(); ++d) {
+        const std::size_t tips = on.tool_of_press.size(), grips = on.bodies[m].tool_of_drag.size();
+        for (std::size_t p = 0; p < tips; ++p) impulses[on.tool_of_press[p]] += stats.reactions[p];
+        for (std::size_t p = tips; p < on.presses.size(); ++p)
+            pushes_.presses[p - tips] += stats.reactions[p] / seconds;
+        for (std::size_t d = grips; d < on.bodies[m].drags.size(); ++d)
+            pushes_.pulls[on.bodies[m].pull_of_drag[d - grips]] = stats.pulls[d] / seconds;
+        for (std::size_t d = 0; d < grips; ++d) {
             const std::size_t t = on.bodies[m].tool_of_drag[d];
             impulses[t] += stats.pulls[d];
             const std::size_t node = std::size_t(on.bodies[m].drags[d].node);

@@ -15,6 +15,24 @@
 
 namespace palpate {
 
+/// What hands do to bodies during a frame, besides the scene's own tools. A body takes 8 presses and 8 drags
+/// at most, those of tools included.
+struct Hands {
+    struct Pull {
+        std::size_t body = 0;  // its number
+        Drag drag;
+    };
+    std::vector<Press> presses;
+    std::vector<Pull> pulls;
+
+    bool empty() const { return presses.empty() && pulls.empty(); }
+};
+
+/// The forces on them, N, mean over the frame, in their order.
+struct Pushes {
+    std::vector<dvec3> presses, pulls;
+};
+
 /// A scene in motion: a solver and a skin for each body, a tip, a grip or a probe for each tool. What it does
 /// goes into the report.
 class Play {
@@ -24,7 +42,22 @@ class Play {
 
     /// Simulates and maps `seconds` from `time` on; what moves on a GPU is mapped when somebody asks for it.
     /// False if a body diverged: then all are as they were before.
-    bool advance(double time, double seconds);
+    bool advance(double time, double seconds, const Hands& hands = {});
+
+    /// What the hands of the last frame felt.
+    const Pushes& pushes() const { return pushes_; }
+
+    /// All bodies as their integrators keep them, and going on from there, to the bit. Tools stay where they
+    /// are on their paths.
+    std::vector<State> save() const;
+    void restore(const std::vector<State>& states);
+
+    /// Goes on from another play of a scene with the same tools: where its tools touched and what they hold
+    /// is theirs no more but this one's. Not the bodies; see restore().
+    void take_tools(Play& from);
+
+    /// Bytes that all moving states take.
+    std::size_t memory() const;
 
     /// Steps that the busiest body takes for a frame of 1/60 s.
     int steps_per_frame() const;
@@ -58,7 +91,7 @@ class Play {
 
  private:
     struct Acting;  // all that acts during a frame
-    Acting acting(double time, double seconds);
+    Acting acting(double time, double seconds, const Hands& hands);
     bool step(double seconds, const Acting& on);
     void map() const;
     void probe(double time, double seconds);
@@ -74,6 +107,7 @@ class Play {
     mutable bool mapped_ = false;                          // they are where the nodes are
     std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
+    Pushes pushes_;
     double time_ = 0;                            // s
     bool probes_ = false;                        // whether any tool is one
     std::vector<std::vector<vec3>> before_;      // where the skins were a frame ago, for those

@@ -13,6 +13,13 @@ constexpr float beyond = 0.1f;  // m around the hand that it knows of what moves
 
 }  // namespace
 
+std::vector<Feel> feels_of(const Scene& scene) {
+    std::vector<Feel> feels;
+    for (const BodyRecipe& recipe : scene.bodies) feels.push_back(recipe.feel);
+    for (const BodyRecipe& recipe : scene.surfaces) feels.push_back(recipe.feel);
+    return feels;
+}
+
 Probe::Probe(const ToolRecipe& recipe, std::vector<Feel> feels) : recipe_(recipe), feels_(std::move(feels)) {}
 
 void Probe::begin(double time, const std::vector<Skin>& skins) {

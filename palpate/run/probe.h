@@ -7,6 +7,9 @@
 
 namespace palpate {
 
+/// How all surfaces of a scene feel, in the order of the skins.
+std::vector<Feel> feels_of(const Scene& scene);
+
 /// A tool that is felt: a device along a scripted path, what pushes it back, and the dents that it leaves in
 /// pictures (2007). Its thousand ticks a second go by the run's own clock.
 class Probe {
@@ -34,7 +37,7 @@ class Probe {
     Patch patch(double time, const std::vector<Skin>& skins,
                 const std::vector<std::vector<vec3>>& velocities) const;
 
-    const ToolRecipe& recipe_;
+    ToolRecipe recipe_;
     std::vector<Feel> feels_;
     std::unique_ptr<Touch> touch_;
     vec3 origin_ = vec3(0);  // m, of the path

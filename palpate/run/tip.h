@@ -29,11 +29,16 @@ class Tip {
     /// tip's centre lies behind its untouched place, measured along the untouched normal.
     double indentation(vec3 centre, const std::vector<Skin>& skins) const;
 
+    /// The skins are those of other meshes now, vertex by vertex the same.
+    void lies_over(const std::vector<Skin>& skins) {
+        for (std::size_t s = 0; s < untouched_.size(); ++s) untouched_[s].triangles = skins[s].triangles;
+    }
+
     /// Where the tip's centre is at a time within its path, m.
     vec3 centre(double time) const { return origin_ + position(recipe_.path, time); }
 
  private:
-    const ToolRecipe& recipe_;
+    ToolRecipe recipe_;
     vec3 origin_ = vec3(0);  // of the path
     std::vector<Skin> untouched_;
 };

@@ -190,12 +190,81 @@ BodyRecipe with_surface(BodyRecipe recipe, const std::filesystem::path& folder,
     return recipe;
 }
 
-Model build_one(const BodyRecipe& wanted, const Scene& scene, std::vector<std::string>& notes,
-                const Progress& progress) {
+// ---- what need not be made again ----
+
+// The same, but for how it looks and feels.
+BodyRecipe without_looks(BodyRecipe recipe) {
+    const BodyRecipe plain;
+    recipe.colour = plain.colour;
+    recipe.shine = plain.shine;
+    recipe.shade = plain.shade;
+    recipe.feel = plain.feel;
+    recipe.line = plain.line;
+    for (Region& region : recipe.regions) region.line = 0;
+    return recipe;
+}
+
+// Only what its surface is made of.
+BodyRecipe without_body(BodyRecipe recipe) {
+    const BodyRecipe plain;
+    recipe = without_looks(std::move(recipe));
+    recipe.nodes = plain.nodes;
+    recipe.spacing = plain.spacing;
+    recipe.material = plain.material;
+    recipe.springs = plain.springs;
+    recipe.pin = plain.pin;
+    recipe.regions = plain.regions;
+    recipe.mapping = plain.mapping;
+    return recipe;
+}
+
+bool looks_down(const BodyRecipe& recipe) {
+    return recipe.pin.below || std::ranges::any_of(recipe.regions, [](const Region& region) {
+               return region.choice.below.has_value();
+           });
+}
+
+// What a scene was made into before it was changed.
+struct Earlier {
+    const Scene& scene;
+    const Models& made;
+
+    // Nothing, if no body was made of the same recipe, apart from what `but_for` takes out of it.
+    const Model* model(const BodyRecipe& recipe, BodyRecipe (*but_for)(BodyRecipe)) const {
+        for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+            if (but_for(scene.bodies[i]) == but_for(recipe)) return &made.models[i];
+        return nullptr;
+    }
+    const Still* still(const BodyRecipe& recipe) const {
+        for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+            if (without_looks(scene.surfaces[i]) == without_looks(recipe)) return &made.stills[i];
+        return nullptr;
+    }
+};
+
+// The whole body, unless nodes are chosen by what is down, or held by a motion that is another now.
+const Model* unchanged(const BodyRecipe& recipe, const Scene& scene, const Earlier* earlier) {
+    if (!earlier || scene.moves != earlier->scene.moves) return nullptr;
+    if (looks_down(recipe) && down(scene) != down(earlier->scene)) return nullptr;
+    return earlier->model(recipe, without_looks);
+}
+
+CleanSurface surface_of(const BodyRecipe& recipe, const Scene& scene, const Earlier* earlier,
+                        const Progress& progress) {
+    const Model* old = earlier && !recipe.is_textured() ? earlier->model(recipe, without_body) : nullptr;
+    if (!old || old->surface.triangles.empty()) return make_surface(recipe, scene.folder, progress);
+    CleanSurface made;
+    made.mesh = old->surface;
+    return made;
+}
+
+Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* earlier,
+                std::vector<std::string>& notes, const Progress& progress) {
+    if (const Model* same = unchanged(wanted, scene, earlier)) return *same;
     const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
     const bool grid = recipe.dims || recipe.cloth;
     CleanSurface made;
-    if (!grid) made = make_surface(recipe, scene.folder, progress);
+    if (!grid) made = surface_of(recipe, scene, earlier, progress);
     for (const std::string& note : made.notes) notes.push_back(fmt::format("body {}: {}", recipe.name, note));
     const double solid = volume(made.mesh);
     tell(progress, recipe, recipe.is_cloth() ? "making cloth" : "filling with a lattice", 0.6);
@@ -223,8 +292,9 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, std::vector<std::s
     return model;
 }
 
-Still build_still(const BodyRecipe& wanted, const Scene& scene, std::vector<std::string>& notes,
-                  const Progress& progress) {
+Still build_still(const BodyRecipe& wanted, const Scene& scene, const Earlier* earlier,
+                  std::vector<std::string>& notes, const Progress& progress) {
+    if (const Still* same = earlier ? earlier->still(wanted) : nullptr) return *same;
     const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
     CleanSurface made = make_surface(recipe, scene.folder, progress);
     for (const std::string& note : made.notes)
@@ -332,14 +402,12 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
     result.pivots.push_back(pivot);
 }
 
-}  // namespace
-
-Models build(const Scene& scene, const Progress& progress) {
+Models build_all(const Scene& scene, const Earlier* earlier, const Progress& progress) {
     Models result;
     for (const BodyRecipe& recipe : scene.bodies)
-        result.models.push_back(build_one(recipe, scene, result.notes, progress));
+        result.models.push_back(build_one(recipe, scene, earlier, result.notes, progress));
     for (const BodyRecipe& recipe : scene.surfaces)
-        result.stills.push_back(build_still(recipe, scene, result.notes, progress));
+        result.stills.push_back(build_still(recipe, scene, earlier, result.notes, progress));
     for (std::size_t i = 0; i < scene.moves.size(); ++i) {
         result.moves.push_back(find_moved(scene.moves[i], i + 1, scene, result.models, result.notes));
         pin(result.models[result.moves[i].body].body, result.moves[i].nodes);
@@ -354,6 +422,15 @@ Models build(const Scene& scene, const Progress& progress) {
         else if (tool.kind == ToolKind::drag)
             result.simulation.pull += tool.stiffness;
     return result;
+}
+
+}  // namespace
+
+Models build(const Scene& scene, const Progress& progress) { return build_all(scene, nullptr, progress); }
+
+Models rebuild(const Scene& scene, const Scene& before, const Models& made, const Progress& progress) {
+    const Earlier earlier{before, made};
+    return build_all(scene, &earlier, progress);
 }
 
 }  // namespace palpate

@@ -13,6 +13,8 @@ struct Waypoint {
     double time;              // s
     vec3 position;            // m
     vec3 rotation = vec3(0);  // degrees about x, then y, then z
+
+    bool operator==(const Waypoint&) const = default;
 };
 
 /// Waypoints in the order of time; between them the motion is straight and even, and rotations go evenly in

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 namespace palpate {
 namespace {
@@ -434,9 +435,9 @@ void apply(toml::table& root, const Change& change) {
 
 }  // namespace
 
-Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& folder,
-                  std::span<const Change> changes) {
-    const Source source{name};
+namespace {
+
+toml::table changed_table(const std::string& text, const Source& source, std::span<const Change> changes) {
     toml::table root;
     try {
         root = toml::parse(text);
@@ -448,6 +449,15 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     std::vector<Change> ordered(changes.begin(), changes.end());
     std::stable_partition(ordered.begin(), ordered.end(), names_source);
     for (const Change& change : ordered) apply(root, change);
+    return root;
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& folder,
+                  std::span<const Change> changes) {
+    const Source source{name};
+    toml::table root = changed_table(text, source, changes);
     Scene scene;
     scene.name = std::filesystem::path(name).stem().string();
     scene.folder = folder;
@@ -457,18 +467,27 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     return scene;
 }
 
-Scene read_scene(const std::string& file_or_name, std::span<const Change> changes) {
+std::string changed(const SceneText& scene, std::span<const Change> changes) {
+    std::ostringstream text;
+    text << changed_table(scene.text, Source{scene.name}, changes) << '\n';
+    return text.str();
+}
+
+SceneText find_scene(const std::string& file_or_name) {
     for (const ShippedScene& shipped : shipped_scenes())
         if (shipped.name == file_or_name)
-            return parse_scene(shipped.text, shipped.name, std::filesystem::current_path(), changes);
+            return {shipped.text, shipped.name, std::filesystem::current_path()};
     if (std::error_code error; !std::filesystem::exists(file_or_name, error)) {
         std::string list;
         for (const ShippedScene& shipped : shipped_scenes())
             list += (list.empty() ? "" : ", ") + shipped.name;
         throw Error("no such scene", file_or_name, "give a TOML file, or one of: " + list);
     }
-    return parse_scene(read_text(file_or_name), file_or_name,
-                       std::filesystem::path(file_or_name).parent_path(), changes);
+    return {read_text(file_or_name), file_or_name, std::filesystem::path(file_or_name).parent_path()};
+}
+
+Scene read_scene(const std::string& file_or_name, std::span<const Change> changes) {
+    return parse_scene(find_scene(file_or_name), changes);
 }
 
 }  // namespace palpate

@@ -31,6 +31,7 @@ struct Choice {
     std::vector<vec3> box;       // two opposite corners, m
 
     bool empty() const { return !below && nodes.empty() && !near && box.empty(); }
+    bool operator==(const Choice&) const = default;
 };
 
 /// A part of a body that is harder or softer than the rest: nodes of a choice, or those that a label volume
@@ -44,6 +45,7 @@ struct Region {
     float stiffness = 0;         // N/m of each spring
     float factor = 0;            // times as stiff as the body
     int line = 0;
+    bool operator==(const Region&) const = default;
 };
 
 /// What is seen of a surface.
@@ -98,6 +100,7 @@ struct BodyRecipe {
     bool has_normal_map() const { return !normal_map.empty() || weave; }
     bool is_textured() const { return !colour_map.empty() || has_normal_map(); }
     bool is_cloth() const { return cloth || sheet || (cage && cage->z == 1); }
+    bool operator==(const BodyRecipe&) const = default;
 };
 
 /// A collider. Where its shape lies in a file, build() fills it in: a Polygon's triangles, or a DistanceField
@@ -122,6 +125,7 @@ struct MoveRecipe {
     std::optional<vec3>
         about;  // the point that the rotation leaves where it is; else the nodes' middle at rest
     int line = 0;
+    bool operator==(const MoveRecipe&) const = default;
 };
 
 enum class ToolKind {
@@ -156,6 +160,7 @@ struct ToolRecipe {
     std::optional<vec3> near;  // it takes the node nearest to this point; else to the path's first position
     bool relative = false;     // the path's positions are counted from where that node is then
     int line = 0;
+    bool operator==(const ToolRecipe&) const = default;
 };
 
 /// All that a scene's file says.
@@ -180,6 +185,20 @@ struct Scene {
 /// (volume, surface, dims, cloth) takes away what was said of the old one: its file, iso, units and maps.
 using Change = std::string;
 
+/// A scene before it is read, so that it can be changed, read again and saved.
+struct SceneText {
+    std::string text;
+    std::string name;              // of its file, or of a shipped scene; for messages
+    std::filesystem::path folder;  // that files are named from
+};
+
+/// The text of a scene: the path of a TOML file, or the name of a shipped scene. Throws Error.
+SceneText find_scene(const std::string& file_or_name);
+
+/// Its text with changes made, to be saved: TOML that reads as the same scene. Comments, and the order of
+/// keys, are lost. Throws Error.
+std::string changed(const SceneText& scene, std::span<const Change> changes);
+
 /// Reads a scene: the path of a TOML file, or the name of a shipped scene. Changes are made before it is
 /// checked. Throws Error with the file, the line and the nearest known key where something does not fit.
 Scene read_scene(const std::string& file_or_name, std::span<const Change> changes = {});
@@ -187,6 +206,10 @@ Scene read_scene(const std::string& file_or_name, std::span<const Change> change
 /// The same from a text; `name` is used in messages, and files are looked for in `folder`.
 Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& folder,
                   std::span<const Change> changes = {});
+
+inline Scene parse_scene(const SceneText& scene, std::span<const Change> changes = {}) {
+    return parse_scene(scene.text, scene.name, scene.folder, changes);
+}
 
 /// A scene that comes with Palpate.
 struct ShippedScene {

@@ -1,0 +1,18 @@
+#include "app/view.h"
+
+#include "app/viewer/window.h"
+
+void view(const std::string& file, const std::vector<palpate::Change>& changes) {
+    using namespace palpate;
+    // What is wrong with a scene is said here rather than in a window.
+    const bool recorded = file.ends_with(".json");
+    const SceneText scene = recorded ? SceneText{} : find_scene(file);
+    if (!recorded) parse_scene(scene, changes);
+    const Recording recording = recorded ? read_recording(file) : Recording{};
+    Window window;
+    if (recorded)
+        window.viewer().replay(recording);
+    else
+        window.viewer().open(scene, changes);
+    window.run();
+}

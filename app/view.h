@@ -1,0 +1,9 @@
+#pragma once
+#include "palpate/scene/scene.h"
+
+#include <string>
+#include <vector>
+
+/// Opens a scene in a window, until it is closed: view.cpp; or where the viewer was not built, no_view.cpp,
+/// which throws Error that says so. `file`: a scene's file or name, a mesh, a volume, or a recording.
+void view(const std::string& file, const std::vector<palpate::Change>& changes);

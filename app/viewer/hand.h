@@ -1,0 +1,100 @@
+#pragma once
+#include "app/viewer/orbit.h"
+#include "palpate/base/names.h"
+#include "palpate/run/experiment.h"
+#include "palpate/touch/devices/mouse.h"
+#include "palpate/touch/loop.h"
+#include "palpate/touch/make_device.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+/// What a hand does to what it meets.
+enum class Mode {
+    pull,   // takes hold of a surface and pulls it along
+    press,  // pushes a round tip into it, along the view
+    dent,   // dents its picture and feels it, a thousand times a second; bodies do not feel it (2007)
+    pin,    // holds nodes fast, or lets go of them
+};
+
+inline std::span<const Named<Mode>> names(Mode) {
+    static constexpr Named<Mode> all[] = {
+        {Mode::pull, "pull"}, {Mode::press, "press"}, {Mode::dent, "dent"}, {Mode::pin, "pin"}};
+    return all;
+}
+
+/// A hand that has hold of a body, or a tip of it that presses.
+class Hold {
+ public:
+    /// Takes hold of the free nodes around a place of a body's surface. Throws Error if there are none near.
+    static Hold pulling(const Experiment& experiment, const Hit& hit);
+
+    /// A tip that comes along a line of sight, touches what `hit` says and goes in by half its radius.
+    static Hold pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius);
+
+    bool presses() const { return threads_.empty(); }
+    float radius() const { return radius_; }
+    vec3 place() const { return place_; }  // m, of the hand
+    std::size_t body() const { return body_; }
+
+    /// Where it shall go. It goes there no faster than a person would move it.
+    void go_to(vec3 place) { target_ = place; }
+    vec3 target() const { return target_; }
+
+    /// What it does in the coming frame, at whose end it is where it then goes.
+    void add_to(Hands& hands);
+
+    /// The force on it in the last frame, N, if `first` is the number of its press or of its first pull then.
+    dvec3 force(const Pushes& pushes, std::size_t first) const;
+    std::size_t pulls() const { return threads_.size(); }
+
+    /// Where the surface is that it pulls: at its nodes.
+    vec3 held(const Play& play) const;
+
+    /// Whether its nodes are still those of a body.
+    bool fits(const Experiment& experiment) const;
+
+ private:
+    // A node on its way, and how far off the hand it is to be.
+    struct Thread {
+        int node;
+        vec3 offset;  // m
+    };
+
+    std::size_t body_ = 0, nodes_ = 0;
+    std::vector<Thread> threads_;
+    float radius_ = 0;     // m, of a tip
+    float stiffness_ = 0;  // N/m, of a tip, or of each thread
+    float fastest_ = 1;    // m/s
+    vec3 place_ = vec3(0), target_ = vec3(0);
+};
+
+/// A hand that feels: a device, its touch, and the loop that ticks it a thousand times a second in real time.
+class FeelingHand {
+ public:
+    /// It begins near `start`, among those skins. Throws Error if the device cannot be opened.
+    FeelingHand(std::unique_ptr<Device> device, std::vector<Feel> feels, float radius, vec3 start,
+                const std::vector<Skin>& skins);
+
+    Felt felt() const { return touch_.felt(); }
+    const LoopTiming& timing() const { return loop_->timing(); }
+    double rate() const { return loop_->rate(); }
+    std::string granted() const;
+
+    /// What it can meet from now on: the skins around it, as they move. Once a picture.
+    void feel(const std::vector<Skin>& skins);
+
+ private:
+    void feel(const std::vector<Skin>& skins, vec3 around);
+
+    Touch touch_;
+    std::vector<std::vector<vec3>> before_;  // where the skins were
+    double felt_at_ = 0;                     // s, when that was
+    std::optional<TouchLoop> loop_;          // last: it ticks the touch
+};
+
+}  // namespace palpate

@@ -1,0 +1,682 @@
+#include "app/viewer/viewer.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/mesh/write.h"
+#include "palpate/run/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+constexpr double calm = 0.4;            // s without motion, after which a picture is drawn in full
+constexpr std::size_t most_holds = 8;   // of each kind on a body, see Influences
+constexpr long frames_per_picture = 2;  // of a film: 30 pictures a second
+constexpr float away = 0.02f;           // m: so far before a surface a hand waits that does not dent it
+constexpr float dent_depth = 0.6f;      // in radii of its tip
+const vec3 hand_colour(0.95f, 0.6f, 0.1f), proxy_colour(0.1f, 0.45f, 0.85f);
+
+Bounds box_of(const Play& play) {
+    Bounds box;
+    for (const Skin& skin : play.skins())
+        for (vec3 p : skin.positions) box.include(p);
+    return box;
+}
+
+std::vector<Change> changes_for(const Compared& compared, const Scene& scene) {
+    std::vector<Change> changes;
+    if (compared.with == Compared::With::backend)
+        changes.push_back(fmt::format("simulation.backend=\"{}\"", name_of(compared.backend)));
+    if (compared.with == Compared::With::mapping)
+        for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+            changes.push_back(fmt::format("body.{}.mapping=\"{}\"", b + 1, name_of(compared.mapping)));
+    return changes;
+}
+
+// Two pictures side by side.
+Image beside_each_other(const Image& left, const Image& right) {
+    Image both{left.width + right.width, left.height, {}};
+    for (int row = 0; row < left.height; ++row)
+        for (const Image* one : {&left, &right}) {
+            const auto from = one->pixels.begin() + 4 * std::ptrdiff_t(row) * one->width;
+            both.pixels.insert(both.pixels.end(), from, from + 4 * one->width);
+        }
+    return both;
+}
+
+// The camera of one eye; both look at the same point, a thirtieth of its distance apart.
+Camera eye_of(Camera camera, float side) {
+    const vec3 to = camera.look_at - camera.eye;
+    const vec3 right = glm::cross(to, camera.up);
+    if (glm::length(right) > 0) camera.eye += side * glm::length(to) / 60 * glm::normalize(right);
+    return camera;
+}
+
+}  // namespace
+
+float Curve::mean() const {
+    float sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) sum += at(i);
+    return count_ > 0 ? sum / float(count_) : 0;
+}
+
+float Curve::most() const {
+    float most = 0;
+    for (std::size_t i = 0; i < count_; ++i) most = std::max(most, at(i));
+    return most;
+}
+
+Viewer::Viewer(const gl::Context& context, ivec2 size)
+    : context_(context), size_(glm::max(size, ivec2(1))), left_(context, size_), right_(context, ivec2(16)) {}
+
+Viewer::~Viewer() = default;
+
+void Viewer::say(const std::string& text, bool bad) { message_ = {text, bad, now()}; }
+
+// What a person asks for may fail, and the window goes on.
+void Viewer::attempt(const std::function<void()>& what) noexcept {
+    try {
+        what();
+    } catch (const std::bad_alloc&) {
+        say("not enough memory in this machine; use fewer nodes or faces", true);
+    } catch (const std::exception& error) {
+        say(error.what(), true);
+    }
+}
+
+// ---- what is open ----
+
+void Viewer::open(SceneText source, std::vector<Change> changes) {
+    replay_.reset();
+    import_ = std::make_unique<Import>(std::move(source), std::move(changes));
+}
+
+void Viewer::open_file(const std::filesystem::path& file) noexcept {
+    attempt([&] {
+        if (file.extension() == ".json")
+            replay(read_recording(file));
+        else
+            open(scene_for(file));
+    });
+}
+
+void Viewer::replay(Recording recording) {
+    open(recording.scene, recording.changes);
+    replay_ = std::move(recording);
+}
+
+void Viewer::cancel_import() {
+    if (!import_) return;
+    import_->cancel();
+    say("stopped opening " + import_->name() + " as soon as it notices");
+}
+
+void Viewer::take_import() {
+    if (!import_ || !import_->done()) return;
+    const std::unique_ptr<Import> done = std::move(import_);
+    const bool was_cancelled = done->cancelled();
+    attempt([&] { begin(done->take()); });
+    if (was_cancelled) say("stopped opening " + done->name());
+    if (message_.bad) replay_.reset();
+}
+
+void Viewer::begin(Prepared prepared) {
+    auto experiment = std::make_unique<Experiment>(std::move(prepared), &context_);
+    feeling_.reset();
+    mouse_ = nullptr;
+    denting_ = false;
+    holds_.clear();
+    active_.reset();
+    drag_ = Drag::none;
+    beside_.reset();
+    compared_ = {};
+    experiment_ = std::move(experiment);
+    frames_ = 0;
+    simulated_before_ = mapped_before_ = 0;
+    readings_ = {};
+    selected_.clear();
+    const Scene& scene = experiment_->scene();
+    orbit_ = Orbit(camera_of(scene, experiment_->models()));
+    const Bounds box = box_of(experiment_->play());
+    options.tip = box.empty() ? 0.01f : std::clamp(0.05f * glm::length(box.size()), 0.002f, 0.5f);
+    for (const ToolRecipe& tool : scene.tools)
+        if (tool.kind != ToolKind::drag) options.tip = tool.radius;
+    options.paused = false;
+    const auto& notes = experiment_->models().notes;
+    say(notes.empty() ? (replay_ ? "replaying " : "opened ") + experiment_->source().name : notes.front());
+}
+
+// ---- the scene beside it ----
+
+void Viewer::follow_compared() {
+    if (options.compared == compared_ || !experiment_) return;
+    compared_ = options.compared;
+    beside_.reset();
+    attempt([&] {
+        const std::vector<Change> changes = changes_for(compared_, experiment_->scene());
+        if (!changes.empty()) beside_ = experiment_->beside(changes);
+    });
+    if (!beside_) options.compared = compared_ = {};
+}
+
+// ---- changes ----
+
+void Viewer::change(const std::vector<Change>& changes, bool again) {
+    if (!experiment_) return;
+    attempt([&] {
+        experiment_->change(changes, again);
+        compared_ = {};  // the other goes on from here
+    });
+}
+
+void Viewer::undo() {
+    if (!experiment_ || !experiment_->can_undo()) return;
+    attempt([&] {
+        experiment_->undo();
+        compared_ = {};
+        say("undone");
+    });
+}
+
+void Viewer::redo() {
+    if (!experiment_ || !experiment_->can_redo()) return;
+    attempt([&] {
+        experiment_->redo();
+        compared_ = {};
+        say("done again");
+    });
+}
+
+void Viewer::restart() {
+    if (!experiment_) return;
+    replay_.reset();
+    holds_.clear();
+    active_.reset();
+    attempt([&] {
+        experiment_->restart();
+        compared_ = {};
+        say("from the beginning");
+    });
+}
+
+void Viewer::return_to_good() {
+    if (!experiment_) return;
+    holds_.clear();
+    active_.reset();
+    attempt([&] {
+        experiment_->return_to_good();
+        compared_ = {};
+        say("as it was a moment ago");
+    });
+}
+
+void Viewer::step_once() {
+    options.paused = true;
+    if (experiment_) one_frame();
+}
+
+// ---- the pointer ----
+
+ivec2 Viewer::view_size() const {
+    const bool halved = options.stereo || beside_;
+    return glm::max(halved ? ivec2(size_.x / 2, size_.y) : size_, ivec2(1));
+}
+
+void Viewer::resize(ivec2 size) {
+    if (size.x < 1 || size.y < 1) return;  // minimised: nothing is drawn until it has a size again
+    size_ = size;
+}
+
+namespace {
+
+// Side by side the same point is in both halves.
+vec2 in_view(vec2 pixel, ivec2 view, ivec2 whole) {
+    if (view.x < whole.x && pixel.x >= float(view.x)) pixel.x -= float(view.x);
+    return pixel;
+}
+
+}  // namespace
+
+void Viewer::press(Button button, bool shift, bool alt) {
+    if (!experiment_ || drag_ != Drag::none) return;
+    if (button == Button::middle || (button == Button::right && shift)) {
+        drag_ = Drag::pan;
+    } else if (button == Button::right || alt) {
+        drag_ = Drag::turn;
+    } else {
+        attempt([&] { reach_in(); });
+    }
+}
+
+void Viewer::reach_in() {
+    const Ray ray = ray_through(camera(), in_view(pointer_, view_size(), size_), view_size());
+    const auto hit = pick(ray, experiment_->play().skins());
+    if (!hit) {
+        drag_ = Drag::turn;  // beside everything
+        return;
+    }
+    touched_ = true;
+    selected_.assign({hit->place - 4 * options.tip, hit->place + 4 * options.tip});
+    if (options.mode == Mode::dent) return start_denting(*hit);
+    if (hit->surface >= experiment_->models().models.size())
+        return say("nothing moves this surface; it can be dented");
+    if (replay_) return say("a recording is replayed; press R to begin anew");
+    if (options.mode == Mode::pin) return pin_at(*hit);
+    const Hold hold = options.mode == Mode::pull ? Hold::pulling(*experiment_, *hit)
+                                                 : Hold::pressing(*experiment_, *hit, ray, options.tip);
+    if (!room_for(hold))
+        return say("no more hands fit on this body; press K to let go of those you left", true);
+    holds_.push_back(hold);
+    active_ = holds_.size() - 1;
+    drag_ = Drag::hold;
+    depth_ = glm::dot(hold.target() - camera().eye, glm::normalize(camera().look_at - camera().eye));
+}
+
+// A body takes so many presses and drags at most, those of the scene's tools included.
+bool Viewer::room_for(const Hold& hold) const {
+    std::size_t presses = hold.presses(), pulls = hold.pulls();
+    for (const ToolRecipe& tool : experiment_->scene().tools)
+        (tool.kind == ToolKind::press ? presses : pulls) += tool.kind != ToolKind::dent;
+    for (const Hold& other : holds_) {
+        presses += other.presses();
+        if (other.body() == hold.body()) pulls += other.pulls();
+    }
+    return presses <= most_holds && pulls <= most_holds;
+}
+
+void Viewer::pin_at(const Hit& hit) {
+    const Body& body = experiment_->models().models[hit.surface].body;
+    const auto positions = experiment_->play().nodes(hit.surface).positions;
+    int nearest = 0;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (glm::distance(positions[i], hit.place) <
+            glm::distance(positions[std::size_t(nearest)], hit.place))
+            nearest = int(i);
+    const bool fast = !experiment_->is_pinned(hit.surface, nearest);
+    std::vector<int> nodes;
+    const float reach = std::max(options.tip, 0.5f * body.spacing);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (int(i) == nearest || glm::distance(positions[i], positions[std::size_t(nearest)]) <= reach)
+            nodes.push_back(int(i));
+    experiment_->pin(hit.surface, nodes, fast);
+    compared_ = {};
+    say(fmt::format("{} {} node{}", fast ? "pinned" : "let go of", nodes.size(),
+                    nodes.size() > 1 ? "s" : ""));
+}
+
+void Viewer::release(Button button) {
+    const bool held = drag_ == Drag::hold && button == Button::left;
+    if (held && active_) {
+        holds_.erase(holds_.begin() + std::ptrdiff_t(*active_));
+        active_.reset();
+    }
+    if (button == Button::left && denting_) {
+        denting_ = false;
+        push_ = 0;
+        follow_pointer();
+    }
+    if (drag_ != Drag::hold || held) drag_ = Drag::none;
+}
+
+void Viewer::move_pointer(vec2 pixel) {
+    const vec2 by = pixel - pointer_;
+    pointer_ = pixel;
+    if (!experiment_) return;
+    if (drag_ == Drag::turn || drag_ == Drag::pan) {
+        drag_ == Drag::turn ? orbit_.turn(by, size_.y) : orbit_.pan(by, size_.y);
+        moved_ = now();
+        if (mouse_) mouse_->look(camera(), view_size());
+        return;
+    }
+    follow_pointer();
+}
+
+// What it holds goes along, as deep in the picture as it is.
+vec3 Viewer::follow_pointer() {
+    const vec2 pixel = in_view(pointer_, view_size(), size_);
+    const Ray ray = ray_through(camera(), pixel, view_size());
+    const vec3 forward = glm::normalize(camera().look_at - camera().eye);
+    if (active_) {
+        const float start = glm::dot(ray.from - camera().eye, forward);
+        holds_[*active_].go_to(ray.at((depth_ - start) / glm::dot(ray.along, forward)));
+    }
+    if (!mouse_) return ray.at(depth_);
+    // A hand that dents follows the surface under the pointer; where there is none it stays as deep.
+    if (const auto hit = pick(ray, experiment_->play().skins())) {
+        const float goal = hit->way * glm::dot(ray.along, forward) + (denting_ ? push_ : -away);
+        notches_ = (goal - glm::distance(camera().look_at, camera().eye)) / MouseSettings{}.notch;
+    }
+    mouse_->point({.time = now(), .position = pixel, .buttons = denting_ ? 1u : 0u, .wheel = notches_});
+    const float depth = glm::distance(camera().look_at, camera().eye) + notches_ * MouseSettings{}.notch;
+    return ray.at(depth / glm::dot(ray.along, forward));
+}
+
+void Viewer::wheel(float notches) {
+    if (!experiment_) return;
+    moved_ = now();
+    if (active_) {
+        depth_ += notches * 0.25f * options.tip;
+        follow_pointer();
+    } else if (denting_) {
+        push_ = std::clamp(push_ + notches * 0.15f * options.tip, 0.0f, 4 * options.tip);
+        follow_pointer();
+    } else {
+        orbit_.zoom(notches);
+        if (mouse_) mouse_->look(camera(), view_size());
+    }
+}
+
+void Viewer::keep() {
+    if (active_) {
+        active_.reset();
+        drag_ = Drag::none;
+        say("it stays there; K again lets go");
+    } else {
+        holds_.clear();
+    }
+}
+
+void Viewer::frame_selection() {
+    if (!experiment_) return;
+    Bounds box;
+    for (vec3 p : selected_) box.include(p);
+    orbit_.frame(box.empty() ? box_of(experiment_->play()) : box);
+    if (mouse_) mouse_->look(camera(), view_size());
+    selected_.clear();
+    moved_ = now();
+}
+
+// ---- the hand that feels ----
+
+void Viewer::make_feeling_hand() {
+    const bool wanted = experiment_ && options.mode == Mode::dent;
+    const bool fits = feeling_ && feeling_device_ == options.device && feeling_tip_ == options.tip &&
+                      feeling_shapes_ == experiment_->shapes();
+    if (wanted && fits) return;
+    if (!wanted && !feeling_) return;
+    feeling_.reset();
+    mouse_ = nullptr;
+    if (!wanted) return;
+    attempt([&] {
+        DeviceSettings settings{.path = {}, .mouse = {.camera = camera(), .size = view_size()}, .log = {}};
+        if (options.device == DeviceKind::playback) settings.log = options.device_file;
+        if (options.device == DeviceKind::hand || options.device == DeviceKind::script) {
+            if (options.device_file.empty())
+                throw Error("no path for the hand", "the viewer", "name a file of rows t, x, y, z");
+            settings.path = read_path(options.device_file);
+        }
+        auto device = make_device(options.device, settings);
+        vec3 start = settings.path.empty() ? camera().look_at : settings.path.front().position;
+        if (options.device == DeviceKind::mouse) {
+            mouse_ = static_cast<Mouse*>(device.get());
+            start = follow_pointer();  // so that it begins there and does not come from elsewhere
+        }
+        feeling_ = std::make_unique<FeelingHand>(std::move(device), feels_of(experiment_->scene()),
+                                                 options.tip, start, experiment_->play().skins());
+    });
+    if (!feeling_) {
+        mouse_ = nullptr;
+        options.mode = Mode::pull;
+        options.device = DeviceKind::mouse;
+    }
+    feeling_device_ = options.device;
+    feeling_tip_ = options.tip;
+    feeling_shapes_ = experiment_->shapes();
+}
+
+void Viewer::start_denting(const Hit&) {
+    if (!mouse_) return;
+    denting_ = true;
+    push_ = dent_depth * options.tip;
+    drag_ = Drag::hold;
+    follow_pointer();
+}
+
+void Viewer::feel() {
+    make_feeling_hand();
+    if (!feeling_) return;
+    feeling_->feel(experiment_->play().skins());
+    if (mouse_) follow_pointer();
+}
+
+// ---- going on ----
+
+void Viewer::advance(int frames) {
+    take_import();
+    if (!experiment_) return;
+    std::erase_if(holds_, [&](const Hold& hold) { return !hold.fits(*experiment_); });
+    if (active_ && *active_ >= holds_.size()) active_.reset(), drag_ = Drag::none;
+    follow_compared();
+    for (int f = 0; f < frames && !options.paused && experiment_->trouble().empty(); ++f) one_frame();
+    attempt([&] { feel(); });
+    const double time = now();
+    if (measured_ > 0) measure(time - measured_);
+    measured_ = time;
+}
+
+void Viewer::one_frame() {
+    attempt([&] {
+        if (replay_) {
+            if (!experiment_->replay(*replay_)) {
+                const bool same = experiment_->fingerprint() == replay_->fingerprint;
+                say(same ? "replayed to the end, the same to the bit"
+                         : "replayed to the end, but the state is another: another backend or machine?",
+                    !same);
+                replay_.reset();
+                options.paused = true;
+            }
+        } else {
+            Hands hands;
+            for (Hold& hold : holds_) hold.add_to(hands);
+            experiment_->advance(hands);
+            if (beside_) beside_->advance(hands);
+        }
+        if (!experiment_->trouble().empty())
+            say(experiment_->trouble() + "; it is held where it was last sound", true);
+    });
+    moved_ = now();
+    ++frames_;
+    if (film_ && frames_ % frames_per_picture == 0) add_film_frame();
+}
+
+void Viewer::measure(double seconds) {
+    const Report& report = experiment_->report();
+    auto spent = [](double sum, double& before) {
+        const double more = std::max(sum - before, 0.0);
+        before = sum;
+        return float(1000 * more);
+    };
+    if (options.paused) return;
+    readings_.simulate.add(spent(report.seconds.simulate, simulated_before_));
+    readings_.map.add(spent(report.seconds.map, mapped_before_));
+    readings_.pace.add(float(std::max(experiment_->time() - paced_, 0.0) / std::max(seconds, 1e-6)));
+    paced_ = experiment_->time();
+    readings_.largest_speed = 0;
+    for (const Stats& stats : experiment_->play().stats())
+        readings_.largest_speed = std::max(readings_.largest_speed, stats.largest_speed);
+    if (frames_ % 15 != 0) return;
+    readings_.memory = experiment_->play().memory();
+    if (!on_gpu(experiment_->models().simulation.backend)) readings_.energy = experiment_->energy();
+}
+
+// ---- pictures ----
+
+std::vector<Viewer::Arrow> Viewer::arrows() const {
+    std::vector<Arrow> arrows;
+    if (!experiment_) return arrows;
+    std::size_t press = 0, pull = 0;
+    for (const Hold& hold : holds_) {
+        const dvec3 force = hold.force(experiment_->play().pushes(), hold.presses() ? press : pull);
+        arrows.push_back({hold.place(), vec3(force)});
+        (hold.presses() ? press : pull) += hold.presses() ? 1 : hold.pulls();
+    }
+    if (feeling_) {
+        const Felt felt = feeling_->felt();
+        if (glm::length(felt.force) > 0) arrows.push_back({felt.proxy, felt.force});
+    }
+    return arrows;
+}
+
+Traces Viewer::traces() const {
+    Traces traces;
+    for (const Hold& hold : holds_) {
+        if (hold.presses()) {
+            traces.balls.push_back({hold.place(), hold.radius(), hand_colour});
+            continue;
+        }
+        traces.balls.push_back({hold.place(), 0.25f * options.tip, hand_colour});
+        traces.lines.push_back(uvec2(traces.points.size(), traces.points.size() + 1));
+        traces.points.insert(traces.points.end(), {hold.held(experiment_->play()), hold.place()});
+    }
+    if (!feeling_) return traces;
+    const Felt felt = feeling_->felt();
+    traces.balls.push_back({felt.proxy, options.tip, proxy_colour});
+    if (glm::distance(felt.hand, felt.proxy) > 0.05f * options.tip) {
+        traces.balls.push_back({felt.hand, 0.4f * options.tip, hand_colour});
+        traces.lines.push_back(uvec2(traces.points.size(), traces.points.size() + 1));
+        traces.points.insert(traces.points.end(), {felt.proxy, felt.hand});
+    }
+    for (std::size_t s = 0; s < experiment_->play().skins().size(); ++s)
+        traces.dents.push_back(felt.dents_of(int(s)));
+    return traces;
+}
+
+Quality Viewer::quality() {
+    if (film_ || options.care == Care::full) return {};
+    const bool hurry = context_.software() && now() - moved_ < calm;
+    return options.care == Care::draft || hurry ? draft_quality : Quality{};
+}
+
+void Viewer::draw() {
+    if (!experiment_) return;
+    const double start = now();
+    quality_ = quality();
+    draw_views();
+    left_.show({0, 0});
+    if (beside_) right_.show({view_size().x, 0});
+    context_.finish();
+    readings_.draw.add(float(1000 * (now() - start)));
+}
+
+// Stereo shows the left view's renderer twice; the other picture goes beside it at once.
+void Viewer::draw_views() {
+    const Traces traces = this->traces();
+    left_.resize(view_size());
+    left_.set(quality_);
+    if (options.stereo && !beside_) {
+        left_.draw(*experiment_, eye_of(camera(), 1), options.look, traces);
+        left_.show({view_size().x, 0});
+        left_.draw(*experiment_, eye_of(camera(), -1), options.look, traces);
+        return;
+    }
+    left_.draw(*experiment_, camera(), options.look, traces);
+    if (!beside_) return;
+    right_.resize(view_size());
+    right_.set(quality_);
+    right_.draw(*beside_, camera(), options.look, traces);
+}
+
+Image Viewer::image() {
+    quality_ = {};
+    if (!experiment_) return {};
+    draw_views();
+    Image left = left_.image();
+    if (beside_) return beside_each_other(left, right_.image());
+    if (!options.stereo) return left;
+    left_.draw(*experiment_, eye_of(camera(), 1), options.look, traces());
+    return beside_each_other(left, left_.image());
+}
+
+// ---- files ----
+
+std::filesystem::path Viewer::free_name(const std::string& ending) const {
+    const std::string stem = std::filesystem::path(experiment_->source().name).stem().string();
+    std::error_code error;
+    for (int number = 1;; ++number) {
+        const std::filesystem::path name = folder / fmt::format("{}-{}{}", stem, number, ending);
+        if (!std::filesystem::exists(name, error)) return name;
+    }
+}
+
+void Viewer::save_scene() {
+    if (!experiment_) return;
+    attempt([&] {
+        // Where the files that it names are found from.
+        const std::filesystem::path was = folder;
+        folder = experiment_->source().folder;
+        const std::filesystem::path name = free_name(".toml");
+        folder = was;
+        write_text(name, changed(experiment_->source(), experiment_->changes()));
+        say("saved the scene as " + name.lexically_normal().string());
+    });
+}
+
+void Viewer::save_picture() {
+    if (!experiment_) return;
+    attempt([&] {
+        const std::filesystem::path name = free_name(".png");
+        write_png(image(), name);
+        say("saved a picture as " + name.string());
+    });
+}
+
+void Viewer::save_surface() {
+    if (!experiment_) return;
+    attempt([&] {
+        const std::vector<Skin>& skins = experiment_->play().skins();
+        std::string names;
+        for (const Skin& skin : skins) {
+            const std::filesystem::path name = free_name(".ply");
+            write_mesh({skin.positions, skin.normals, *skin.triangles}, name);
+            names += (names.empty() ? "" : ", ") + name.string();
+        }
+        say("saved the surface as " + names);
+    });
+}
+
+void Viewer::save_recording() {
+    if (!experiment_) return;
+    attempt([&] {
+        const std::filesystem::path name = free_name(".json");
+        write_recording(experiment_->recording(), name);
+        say("saved all inputs since the beginning as " + name.string() + "; drop it here to replay it");
+    });
+}
+
+void Viewer::start_or_stop_film() {
+    if (!experiment_) return;
+    attempt([&] {
+        if (film_) {
+            const std::unique_ptr<Film> film = std::move(film_);
+            film->finish();
+            return say("saved the film as " + film_name_.string());
+        }
+        film_size_ = size_;
+        film_name_ = free_name(".mp4");
+        const Image first = image();
+        film_ = std::make_unique<Film>(film_name_, first.width, first.height, 60 / int(frames_per_picture));
+        film_->add(first);
+        say("filming; V again ends it");
+    });
+}
+
+void Viewer::add_film_frame() {
+    attempt([&] {
+        if (size_ != film_size_) {
+            say("the film ended because the window has another size now", true);
+            const std::unique_ptr<Film> film = std::move(film_);
+            film->finish();
+            return;
+        }
+        film_->add(image());
+    });
+    if (message_.bad) film_.reset();
+}
+
+}  // namespace palpate

@@ -1,0 +1,218 @@
+#pragma once
+#include "app/viewer/hand.h"
+#include "app/viewer/import.h"
+#include "app/viewer/orbit.h"
+#include "app/viewer/view.h"
+#include "palpate/run/experiment.h"
+#include "palpate/run/film.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// The last few seconds of something that is measured once a picture.
+class Curve {
+ public:
+    static constexpr std::size_t length = 180;
+    void add(float value) {
+        values_[next_] = value;
+        next_ = (next_ + 1) % length;
+        count_ = std::min(count_ + 1, length);
+    }
+    std::size_t count() const { return count_; }
+    float at(std::size_t i) const {
+        return values_[(next_ + length - count_ + i) % length];
+    }  // the oldest: 0
+    float mean() const;
+    float most() const;
+
+ private:
+    std::array<float, length> values_ = {};
+    std::size_t next_ = 0, count_ = 0;
+};
+
+/// The same experiment twice, side by side: the right one with another mapping, or on another backend.
+struct Compared {
+    enum class With { nothing, mapping, backend } with = With::nothing;
+    Mapping mapping = Mapping::trilinear;
+    Backend backend = Backend::reference;
+    bool operator==(const Compared&) const = default;
+};
+
+/// How well pictures are drawn.
+enum class Care {
+    automatic,  // as a draft while something moves and the CPU has to draw; else in full
+    draft,
+    full
+};
+
+/// All that a person can set about how they look and reach in; it is no part of what moves.
+struct Options {
+    Mode mode = Mode::pull;
+    float tip = 0.01f;  // m, the radius of what presses and dents
+    Look3d look;
+    Care care = Care::automatic;
+    bool paused = false;
+    bool stereo = false;  // side by side, for the papers' immersive displays
+    Compared compared;
+    DeviceKind device = DeviceKind::mouse;  // of the hand that dents
+    std::string device_file;                // its path, or its log
+};
+
+enum class Button { left, middle, right };
+
+/// What the window shows and what a pointer does in it, without a window: whoever has one, or a test, tells
+/// it of events, lets it go on, and asks it to draw. All in one thread.
+class Viewer {
+ public:
+    /// Draws in that context, which must outlive it.
+    Viewer(const gl::Context& context, ivec2 size);
+    ~Viewer();
+
+    Options options;
+
+    // ---- what is open ----
+
+    /// Begins to build a scene, and shows it when it is ready; until then what was open goes on.
+    void open(SceneText source, std::vector<Change> changes = {});
+    /// A scene, a mesh, a volume or a recording. What cannot be opened is said in message().
+    void open_file(const std::filesystem::path& file) noexcept;
+    void replay(Recording recording);
+    const Import* importing() const { return import_.get(); }
+    void cancel_import();
+    Experiment* experiment() { return experiment_.get(); }
+    const Experiment* experiment() const { return experiment_.get(); }
+    const Experiment* beside() const { return beside_.get(); }
+    bool replaying() const { return bool(replay_); }
+
+    // ---- what a person does; places in pixels from the upper left corner ----
+
+    void resize(ivec2 size);
+    ivec2 size() const { return size_; }
+    void move_pointer(vec2 pixel);
+    void press(Button button, bool shift = false, bool alt = false);
+    void release(Button button);
+    void wheel(float notches);
+    /// What it holds stays there, or if it holds nothing, all that was left goes.
+    void keep();
+    void frame_selection();
+    void reset_camera() { orbit_.reset(); }
+    void pause() { options.paused = !options.paused; }
+    void step_once();
+    void restart();
+    void undo();
+    void redo();
+    void return_to_good();
+    /// Changes of the scene. What cannot be is said in message(), and nothing changes.
+    void change(const std::vector<Change>& changes, bool again = false);
+
+    void save_scene();
+    void save_picture();
+    void save_surface();
+    void save_recording();
+    void start_or_stop_film();
+    bool filming() const { return bool(film_); }
+    std::filesystem::path folder = ".";  // where all that goes
+
+    // ---- going on ----
+
+    /// So many frames of 1/60 s, if it is not paused; and whatever has become ready meanwhile.
+    void advance(int frames);
+    /// Into the framebuffer that is bound, which is as large as size().
+    void draw();
+    /// What is drawn, as it would be without a draft's haste, and without a window's frame or controls.
+    Image image();
+
+    // ---- to show ----
+
+    const Camera& camera() const { return orbit_.camera(); }
+    struct Message {
+        std::string text;
+        bool bad = false;
+        double since = 0;  // s
+    };
+    const Message& message() const { return message_; }
+    /// A force on a hand, where it is.
+    struct Arrow {
+        vec3 at = vec3(0);     // m
+        vec3 force = vec3(0);  // N
+    };
+    std::vector<Arrow> arrows() const;
+    const std::vector<Hold>& holds() const { return holds_; }
+    bool is_holding() const { return active_.has_value() || denting_; }
+    bool touched() const { return touched_; }  // whether anybody has reached in yet
+    const FeelingHand* feeling() const { return feeling_.get(); }
+    ivec2 view_size() const;  // of one of the pictures side by side
+    struct Readings {
+        Curve simulate, map, draw;  // ms a picture
+        Curve pace;                 // s of the scene a second
+        Energy energy;
+        double largest_speed = 0;  // m/s
+        std::size_t memory = 0;    // bytes, of all moving states
+    };
+    const Readings& readings() const { return readings_; }
+
+ private:
+    enum class Drag { none, turn, pan, hold };
+
+    void begin(Prepared prepared);
+    void say(const std::string& text, bool bad = false);
+    void attempt(const std::function<void()>& what) noexcept;
+    void take_import();
+    void follow_compared();
+    void reach_in();
+    void pin_at(const Hit& hit);
+    void start_denting(const Hit& hit);
+    vec3 follow_pointer();  // where the hand is then
+    void make_feeling_hand();
+    void feel();
+    void one_frame();
+    void add_film_frame();
+    Traces traces() const;
+    Quality quality();
+    bool room_for(const Hold& hold) const;
+    std::filesystem::path free_name(const std::string& ending) const;
+    void measure(double seconds);
+    void draw_views();
+
+    const gl::Context& context_;
+    ivec2 size_;
+    View left_, right_;
+    std::unique_ptr<Import> import_;
+    std::unique_ptr<Experiment> experiment_, beside_;
+    Compared compared_;  // what beside_ is
+    std::optional<Recording> replay_;
+    Orbit orbit_;
+    Message message_;
+
+    vec2 pointer_ = vec2(0);
+    Drag drag_ = Drag::none;
+    std::vector<Hold> holds_;
+    std::optional<std::size_t> active_;  // of the holds, the pointer's own
+    float depth_ = 0;                    // m from the eye, of what the pointer holds
+    std::unique_ptr<FeelingHand> feeling_;
+    Mouse* mouse_ = nullptr;  // feeling_'s, if that is its device
+    DeviceKind feeling_device_ = DeviceKind::mouse;
+    float feeling_tip_ = 0;
+    int feeling_shapes_ = 0;
+    bool denting_ = false, touched_ = false;
+    float push_ = 0;              // m, how deep the pointer dents
+    float notches_ = 0;           // of the mouse's wheel
+    std::vector<vec3> selected_;  // m, around what was last taken hold of
+
+    std::unique_ptr<Film> film_;
+    ivec2 film_size_ = ivec2(0);
+    std::filesystem::path film_name_;
+    long frames_ = 0;   // since it was opened
+    double moved_ = 0;  // s, when something last moved
+    Quality quality_;
+    Readings readings_;
+    double simulated_before_ = 0, mapped_before_ = 0, measured_ = 0, paced_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,205 @@
+#include "app/viewer/window.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/base/error.h"
+
+#define GLFW_INCLUDE_NONE  // epoxy has OpenGL's names
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace palpate {
+namespace {
+
+constexpr double round_seconds = 1.0 / 60;  // no faster than that
+constexpr int most_frames = 2;              // of the scene a round: behind real time rather than stuck
+
+std::string complaint;  // GLFW's last
+
+// GLFW itself, as long as there is a window.
+struct Glfw {
+    Glfw() {
+        glfwSetErrorCallback([](int, const char* text) { complaint = text; });
+        if (!glfwInit())
+            throw Error("no display to open a window on (" + complaint + ")", "the viewer",
+                        "run it on a desktop, or add --headless to run the scene off screen");
+    }
+    ~Glfw() { glfwTerminate(); }
+};
+
+GLFWwindow* make_window(ivec2 size) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_DEPTH_BITS, 0);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    GLFWwindow* window = glfwCreateWindow(size.x, size.y, "Palpate", nullptr, nullptr);
+    if (!window)
+        throw Error("no window with OpenGL 4.5 (" + complaint + ")", "the viewer",
+                    "update the graphics driver, or add --headless to run the scene off screen");
+    glfwMakeContextCurrent(window);
+    glfwSwapInterval(1);
+    return window;
+}
+
+float density(GLFWwindow* window) {
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window, &x, &y);
+    return std::clamp(std::max(x, y), 1.0f, 4.0f);
+}
+
+ivec2 pixels(GLFWwindow* window) {
+    ivec2 size(0);
+    glfwGetFramebufferSize(window, &size.x, &size.y);
+    return size;
+}
+
+// Places come in units of the screen, of which a pixel may be a part.
+vec2 pixels_a_unit(GLFWwindow* window) {
+    ivec2 units(0);
+    glfwGetWindowSize(window, &units.x, &units.y);
+    return vec2(pixels(window)) / vec2(glm::max(units, ivec2(1)));
+}
+
+}  // namespace
+
+struct Window::Parts {
+    Glfw glfw;
+    GLFWwindow* window;
+    gl::Context context;
+    Viewer viewer;
+    Gui gui;
+    double last = now();
+    double due = 0;  // frames
+
+    explicit Parts(ivec2 size)
+        : window(make_window(size)),
+          context(gl::Context::adopt()),
+          viewer(context, pixels(window)),
+          gui(density(window)) {
+        glfwSetWindowUserPointer(window, this);
+        ImGui_ImplGlfw_InitForOpenGL(window, false);
+        listen();
+    }
+    ~Parts() {
+        ImGui_ImplGlfw_Shutdown();  // the window itself goes with GLFW, after all that lives in its context
+    }
+
+    static Parts& of(GLFWwindow* window) { return *static_cast<Parts*>(glfwGetWindowUserPointer(window)); }
+
+    void listen();
+    void key(int key, int scancode, int mods);
+    void letter(unsigned code);
+    void button(int button, bool down, int mods);
+    void begin_gui();
+};
+
+// ImGui hears of everything; the viewer of what is not meant for a control.
+void Window::Parts::listen() {
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+        of(w).viewer.move_pointer(vec2(x, y) * pixels_a_unit(w));
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
+        ImGui_ImplGlfw_MouseButtonCallback(w, button, action, mods);
+        of(w).button(button, action == GLFW_PRESS, mods);
+    });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
+        ImGui_ImplGlfw_ScrollCallback(w, x, y);
+        if (!of(w).gui.wants_pointer()) of(w).viewer.wheel(float(y));
+    });
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+        ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
+        if (action == GLFW_PRESS && !of(w).gui.wants_keys()) of(w).key(key, scancode, mods);
+    });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code) {
+        ImGui_ImplGlfw_CharCallback(w, code);
+        if (!of(w).gui.wants_keys()) of(w).letter(code);
+    });
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
+        if (count > 0) of(w).viewer.open_file(files[0]);
+    });
+}
+
+// What writes no letter, and what Ctrl goes with; the latter by what is printed on the key.
+void Window::Parts::key(int key, int scancode, int mods) {
+    const bool control = mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER), shift = mods & GLFW_MOD_SHIFT;
+    if (key == GLFW_KEY_HOME) gui.key(viewer, Gui::home_key, false, shift);
+    if (key == GLFW_KEY_TAB) gui.key(viewer, '\t', false, shift);
+    if (key == GLFW_KEY_ESCAPE) gui.key(viewer, Gui::escape_key, false, shift);
+    if (!control) return;
+    if (const char* name = glfwGetKeyName(key, scancode); name && name[0] && !name[1])
+        gui.key(viewer, char(std::toupper(static_cast<unsigned char>(name[0]))), true, shift);
+}
+
+void Window::Parts::letter(unsigned code) {
+    if (code < 0x80) gui.key(viewer, char(std::toupper(int(code))), false, false);
+}
+
+void Window::Parts::button(int button, bool down, int mods) {
+    const Button which = button == GLFW_MOUSE_BUTTON_LEFT    ? Button::left
+                         : button == GLFW_MOUSE_BUTTON_RIGHT ? Button::right
+                                                             : Button::middle;
+    if (!down)
+        viewer.release(which);
+    else if (!gui.wants_pointer())
+        viewer.press(which, mods & GLFW_MOD_SHIFT, mods & GLFW_MOD_ALT);
+}
+
+// ImGui counts in pixels here, as the viewer does.
+void Window::Parts::begin_gui() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGuiIO& io = ImGui::GetIO();
+    const ivec2 size = pixels(window);
+    const vec2 scale = pixels_a_unit(window);
+    io.DisplaySize = {float(size.x), float(size.y)};
+    io.DisplayFramebufferScale = {1, 1};
+    if (io.MousePos.x > -1e6f) io.MousePos = {io.MousePos.x * scale.x, io.MousePos.y * scale.y};
+    ImGui::NewFrame();
+}
+
+Window::Window(ivec2 size) : parts_(std::make_unique<Parts>(size)) {}
+Window::~Window() = default;
+Viewer& Window::viewer() { return parts_->viewer; }
+Gui& Window::gui() { return parts_->gui; }
+
+bool Window::round() {
+    Parts& p = *parts_;
+    // Waits for its time, and for longer if nothing moves.
+    const bool idle = p.viewer.options.paused && !p.viewer.importing() && !p.viewer.is_holding();
+    const double wait = p.last + (idle ? 3 : 1) * round_seconds - now();
+    wait > 1e-4 ? glfwWaitEventsTimeout(wait) : glfwPollEvents();
+    if (glfwWindowShouldClose(p.window)) return false;
+    const double time = now();
+    p.due = std::min(p.due + (time - p.last) / round_seconds, double(most_frames));
+    p.last = time;
+    const int frames = int(p.due);
+    p.due -= frames;
+    p.viewer.advance(frames);
+    const ivec2 size = pixels(p.window);
+    if (size.x < 1 || size.y < 1) return true;  // it is an icon
+    p.viewer.resize(size);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, size.x, size.y);
+    glClearColor(0.16f, 0.18f, 0.21f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    p.viewer.draw();
+    p.begin_gui();
+    p.gui.draw(p.viewer);
+    glfwSwapBuffers(p.window);
+    return true;
+}
+
+void Window::run() {
+    while (round()) {}
+}
+
+}  // namespace palpate

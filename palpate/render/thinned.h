@@ -1,0 +1,13 @@
+#pragma once
+#include "palpate/mesh/mesh.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace palpate {
+
+/// About so many triangles that have a mesh's shape, or as many as it has if those are fewer. They are
+/// between vertices of the mesh, so that they move along with it.
+std::vector<uvec3> thinned(const Mesh& mesh, std::size_t triangles);
+
+}  // namespace palpate

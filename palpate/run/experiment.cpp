@@ -1,0 +1,331 @@
+#include "palpate/run/experiment.h"
+
+#include "palpate/base/error.h"
+#include "palpate/run/run.h"
+#include "palpate/solver/stability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace palpate {
+namespace {
+
+constexpr long frames_between_good = 30;
+constexpr std::size_t most_good = 5;           // so that the first of them is about two seconds old
+constexpr std::size_t most_inputs = 500'000;   // of a recording: hours of them
+constexpr std::size_t most_samples = 60 * 60;  // of a report's curves
+
+std::string key_of(const Change& change) { return change.substr(0, change.find('=')); }
+
+// What has no say in a body's surface, in how it hangs, or in what else there is to see.
+bool leaves_shapes(const Change& change) {
+    const std::string key = key_of(change), last = key.substr(key.rfind('.') + 1);
+    if (key.starts_with("simulation.") || key.starts_with("wind.")) return true;
+    for (const char* one : {"youngs_modulus", "stiffness", "springs", "structural", "shear", "flexion",
+                            "density", "mass", "damping", "link_damping", "pin"})
+        if (last == one) return key.starts_with("body.");
+    return key.starts_with("body.") && key.find(".touch.") != std::string::npos;
+}
+
+bool same_shapes(const std::vector<Change>& a, const std::vector<Change>& b) {
+    auto all_of_other = [](const std::vector<Change>& some, const std::vector<Change>& others) {
+        return std::ranges::all_of(some, [&](const Change& change) {
+            return leaves_shapes(change) || std::ranges::find(others, change) != others.end();
+        });
+    };
+    return all_of_other(a, b) && all_of_other(b, a);
+}
+
+bool same_nodes(const Body& a, const Body& b) { return a.name == b.name && a.positions == b.positions; }
+
+// Changes with new ones, which take the place of those of the same key.
+std::vector<Change> with(std::vector<Change> changes, const std::vector<Change>& more) {
+    for (const Change& one : more) {
+        std::erase_if(changes, [&](const Change& old) { return key_of(old) == key_of(one); });
+        changes.push_back(one);
+    }
+    return changes;
+}
+
+float stiffest(const Body& body) {
+    float most = 0;
+    if (const auto* grid = std::get_if<Stencil>(&body.springs))
+        for (const Link& link : grid->links) most = std::max(most, link.stiffness);
+    else
+        for (const Tie& tie : std::get<Table>(body.springs).ties) most = std::max(most, tie.stiffness);
+    return most;
+}
+
+}  // namespace
+
+Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& progress) {
+    Prepared prepared{std::move(source), std::move(changes), {}, {}};
+    prepared.source.folder = std::filesystem::absolute(prepared.source.folder / ".");  // recordings travel
+    prepared.scene = parse_scene(prepared.source, prepared.changes);
+    prepared.models = build(prepared.scene, progress);
+    return prepared;
+}
+
+Strength strength_for(const Body& body) {
+    const float stiffness = stiffest(body);
+    return {0.5f * stiffness, stiffness / (body.spacing * body.spacing)};
+}
+
+// ---- what it is made of ----
+
+struct Experiment::Made {
+    std::vector<Change> changes;
+    std::unique_ptr<Scene> scene;
+    std::unique_ptr<Models> models;
+    std::unique_ptr<Report> report;
+    std::unique_ptr<Play> play;
+    std::vector<double> stable_steps;
+};
+
+namespace {
+
+// Room for hands in the step, as if two took hold of the same node.
+void expect_hands(Models& models) {
+    Strength strongest;
+    for (const Model& model : models.models) {
+        const Strength one = strength_for(model.body);
+        strongest = {std::max(strongest.pull, one.pull), std::max(strongest.pressure, one.pressure)};
+    }
+    models.simulation.pull += 2 * strongest.pull;
+    models.simulation.contact += strongest.pressure;
+}
+
+std::vector<double> stable_steps_of(const Models& models) {
+    std::vector<double> steps;
+    for (const Model& model : models.models)
+        steps.push_back(longest_step(models.simulation.integrator, highest_frequency(model.body),
+                                     model.body.damping, model.body.link_damping));
+    return steps;
+}
+
+}  // namespace
+
+Experiment::Experiment(Prepared prepared, const gl::Context* context)
+    : source_(std::move(prepared.source)), context_(context), history_{prepared.changes} {
+    Made made{.changes = prepared.changes,
+              .scene = std::make_unique<Scene>(std::move(prepared.scene)),
+              .models = std::make_unique<Models>(std::move(prepared.models)),
+              .report = std::make_unique<Report>(),
+              .play = nullptr,
+              .stable_steps = {}};
+    first_changes_ = made.changes;
+    made.scene->simulation.force = made.models->simulation.force = true;
+    expect_hands(*made.models);
+    made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_);
+    made.stable_steps = stable_steps_of(*made.models);
+    take(std::move(made));
+}
+
+Experiment::Made Experiment::make(const std::vector<Change>& changes) const {
+    Made made{.changes = changes,
+              .scene = std::make_unique<Scene>(parse_scene(source_, changes)),
+              .models = nullptr,
+              .report = std::make_unique<Report>(),
+              .play = nullptr,
+              .stable_steps = {}};
+    made.scene->simulation.force = true;
+    made.models = std::make_unique<Models>(rebuild(*made.scene, *scene_, *models_));
+    expect_hands(*made.models);
+    made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_);
+    made.stable_steps = stable_steps_of(*made.models);
+    return made;
+}
+
+void Experiment::take(Made made) {
+    play_ = std::move(made.play);  // before what it refers to goes
+    scene_ = std::move(made.scene);
+    models_ = std::move(made.models);
+    report_ = std::move(made.report);
+    stable_steps_ = std::move(made.stable_steps);
+    trouble_.clear();
+}
+
+// Bodies of the same nodes go on from where they are. A node that is held fast now has no speed.
+void Experiment::carry_over(Made& made) const {
+    const std::vector<State> before = play_->save();
+    std::vector<State> states = made.play->save();
+    for (std::size_t m = 0; m < states.size(); ++m) {
+        const Body& body = made.models->models[m].body;
+        for (std::size_t old = 0; old < before.size(); ++old)
+            if (same_nodes(models_->models[old].body, body)) states[m] = before[old];
+        for (std::size_t i = 0; i < body.count(); ++i)
+            if (!(body.inverse_mass[i] > 0)) states[m].velocities[i] = dvec3(0);
+    }
+    made.play->restore(states);
+    if (made.scene->tools == scene_->tools) made.play->take_tools(*play_);
+}
+
+void Experiment::set(std::vector<Change> changes) {
+    Made made = make(changes);
+    carry_over(made);
+    if (!same_shapes(changes, history_[at_])) ++shapes_;
+    take(std::move(made));
+    record({recorded_, SetChanges{std::move(changes)}});
+}
+
+std::unique_ptr<Experiment> Experiment::beside(const std::vector<Change>& more) const {
+    Prepared prepared{source_, with(changes(), more), {}, {}};
+    prepared.scene = parse_scene(source_, prepared.changes);
+    prepared.models = rebuild(prepared.scene, *scene_, *models_);
+    auto other = std::make_unique<Experiment>(std::move(prepared), context_);
+    other->play_->restore(play_->save());
+    other->frame_ = frame_;
+    return other;
+}
+
+// ---- changes ----
+
+void Experiment::change(const std::vector<Change>& changes, bool again) {
+    std::vector<Change> all = with(this->changes(), changes);
+    set(all);
+    const bool replaces = again && at_ > 0;
+    history_.resize(at_ + (replaces ? 0 : 1));
+    history_.push_back(std::move(all));
+    at_ = history_.size() - 1;
+}
+
+void Experiment::undo() {
+    set(history_[at_ - 1]);
+    --at_;
+}
+
+void Experiment::redo() {
+    set(history_[at_ + 1]);
+    ++at_;
+}
+
+void Experiment::restart() {
+    Made made = make(changes());
+    take(std::move(made));
+    frame_ = 0;
+    good_.clear();
+    first_changes_ = changes();
+    inputs_.clear();
+    recorded_ = 0;
+    replayed_ = 0;
+}
+
+void Experiment::return_to_good() {
+    if (good_.empty()) return;
+    const Good good = good_.front();
+    Made made = make(good.changes);
+    made.play->restore(good.states);
+    if (made.scene->tools == scene_->tools) made.play->take_tools(*play_);
+    if (!same_shapes(good.changes, changes())) ++shapes_;
+    take(std::move(made));
+    record({recorded_, ReturnToGood{}});
+    frame_ = good.frame;
+    if (good.changes != changes()) {
+        history_.resize(at_ + 1);
+        history_.push_back(good.changes);
+        ++at_;
+    }
+    good_ = {good};
+}
+
+void Experiment::pin(std::size_t body, const std::vector<int>& nodes, bool fast) {
+    const std::vector<float>& inverse_mass = models_->models[body].body.inverse_mass;
+    std::vector<char> held(inverse_mass.size());
+    for (std::size_t i = 0; i < held.size(); ++i) held[i] = !(inverse_mass[i] > 0);
+    for (const Moved& moved : models_->moves)
+        if (moved.body == body)
+            for (int node : moved.nodes) held[std::size_t(node)] = false;  // by the motion, not by a pin
+    for (int node : nodes) held[std::size_t(node)] = fast;
+    std::string list;
+    for (std::size_t i = 0; i < held.size(); ++i)
+        if (held[i]) list += fmt::format("{}{}", list.empty() ? "" : ",", i);
+    change({fmt::format("body.{}.pin={{nodes=[{}]}}", body + 1, list)});
+}
+
+bool Experiment::is_pinned(std::size_t body, int node) const {
+    return !(models_->models[body].body.inverse_mass[std::size_t(node)] > 0);
+}
+
+// ---- going on ----
+
+bool Experiment::advance(const Hands& hands) {
+    if (!trouble_.empty()) return false;
+    if (frame_ % frames_between_good == 0) remember();
+    if (!hands.empty()) record({recorded_, hands});
+    ++recorded_;
+    if (!play_->advance(time(), frame_seconds, hands)) {
+        trouble_ = report_->notes.empty() ? "the motion blew up" : report_->notes.back();
+        return false;
+    }
+    ++frame_;
+    for (Report::Tool& tool : report_->tools)
+        if (tool.time.size() > most_samples) tool.time.clear(), tool.force.clear(), tool.indentation.clear();
+    return true;
+}
+
+void Experiment::remember() {
+    good_.push_back({frame_, changes(), play_->save()});
+    if (good_.size() > most_good) good_.pop_front();
+}
+
+Energy Experiment::energy() const {
+    Energy sum;
+    const std::vector<State> states = play_->states();
+    for (std::size_t m = 0; m < states.size(); ++m) {
+        const Energy one = palpate::energy(models_->models[m].body, states[m]);
+        sum.kinetic += one.kinetic;
+        sum.elastic += one.elastic;
+    }
+    return sum;
+}
+
+// ---- recordings ----
+
+void Experiment::record(Input input) {
+    if (inputs_.size() < most_inputs) inputs_.push_back(std::move(input));
+}
+
+Recording Experiment::recording() const {
+    return {source_, first_changes_, inputs_, recorded_, fingerprint()};
+}
+
+bool Experiment::replay(const Recording& recording) {
+    if (recorded_ >= recording.frames) return false;
+    Hands hands;
+    for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= recorded_; ++replayed_) {
+        const auto& what = recording.inputs[replayed_].what;
+        if (const auto* some = std::get_if<Hands>(&what))
+            hands = *some;
+        else if (const auto* set_to = std::get_if<SetChanges>(&what)) {
+            set(set_to->changes);
+            history_.resize(at_ + 1);
+            history_.push_back(set_to->changes);
+            ++at_;
+        } else
+            return_to_good();
+    }
+    for (const Hands::Pull& pull : hands.pulls)
+        if (pull.body >= models_->models.size() || pull.drag.node < 0 ||
+            std::size_t(pull.drag.node) >= models_->models[pull.body].body.count())
+            throw Error(fmt::format("frame {} pulls a node that is not there", recorded_), "the recording",
+                        "replay it with the files that it was made with");
+    advance(hands);
+    return true;
+}
+
+std::string Experiment::fingerprint() const {
+    std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+    for (const State& state : play_->save())
+        for (const auto* list : {&state.positions, &state.velocities})
+            for (const dvec3& v : *list)
+                for (double number : {v.x, v.y, v.z}) {
+                    std::uint64_t bits;
+                    std::memcpy(&bits, &number, sizeof bits);
+                    hash = (hash ^ bits) * 1099511628211u;
+                }
+    return fmt::format("{:016x}", hash);
+}
+
+}  // namespace palpate

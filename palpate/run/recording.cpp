@@ -1,0 +1,135 @@
+#include "palpate/run/recording.h"
+
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using nlohmann::json;
+
+constexpr int version = 1;
+
+json numbers(vec3 v) { return {v.x, v.y, v.z}; }
+
+json of_press(const Press& press) {
+    return {{"centre", numbers(press.centre)},
+            {"velocity", numbers(press.velocity)},
+            {"radius", press.radius},
+            {"stiffness", press.stiffness}};
+}
+
+json of_pull(const Hands::Pull& pull) {
+    return {{"body", pull.body},
+            {"node", pull.drag.node},
+            {"to", numbers(pull.drag.to)},
+            {"velocity", numbers(pull.drag.velocity)},
+            {"stiffness", pull.drag.stiffness}};
+}
+
+json of_input(const Input& input) {
+    json one = {{"at", input.at}};
+    if (const auto* hands = std::get_if<Hands>(&input.what)) {
+        for (const Press& press : hands->presses) one["press"].push_back(of_press(press));
+        for (const Hands::Pull& pull : hands->pulls) one["pull"].push_back(of_pull(pull));
+    } else if (const auto* set = std::get_if<SetChanges>(&input.what)) {
+        one["changes"] = set->changes;
+    } else {
+        one["return"] = true;
+    }
+    return one;
+}
+
+// ---- and back; what is wrong is thrown as nlohmann's or as a text ----
+
+float finite(const json& value) {
+    const auto number = value.get<float>();
+    if (!std::isfinite(number)) throw std::string("a number that is not finite");
+    return number;
+}
+
+vec3 to_vector(const json& value) {
+    if (!value.is_array() || value.size() != 3) throw std::string("a place that is not three numbers");
+    return {finite(value[0]), finite(value[1]), finite(value[2])};
+}
+
+Hands to_hands(const json& one) {
+    Hands hands;
+    for (const json& press : one.value("press", json::array()))
+        hands.presses.push_back({to_vector(press.at("centre")), to_vector(press.at("velocity")),
+                                 finite(press.at("radius")), finite(press.at("stiffness"))});
+    for (const json& pull : one.value("pull", json::array()))
+        hands.pulls.push_back({pull.at("body").get<std::size_t>(),
+                               {pull.at("node").get<int>(), to_vector(pull.at("to")),
+                                to_vector(pull.at("velocity")), finite(pull.at("stiffness"))}});
+    constexpr std::size_t most = 8;  // see Influences
+    if (hands.presses.size() > most || hands.pulls.size() > most)
+        throw std::string("more than 8 presses or pulls at once");
+    for (const Press& press : hands.presses)
+        if (!(press.radius > 0) || !(press.stiffness >= 0)) throw std::string("a press that is none");
+    return hands;
+}
+
+Input to_input(const json& one) {
+    Input input{one.at("at").get<long>(), {}};
+    if (one.contains("changes"))
+        input.what = SetChanges{one["changes"].get<std::vector<Change>>()};
+    else if (one.contains("return"))
+        input.what = ReturnToGood{};
+    else
+        input.what = to_hands(one);
+    return input;
+}
+
+Recording to_recording(const json& all) {
+    if (all.value("palpate-recording", 0) != version) throw std::string("this is no recording of version 1");
+    const json& scene = all.at("scene");
+    Recording recording;
+    recording.scene = {scene.at("text"), scene.at("name"), scene.at("folder").get<std::string>()};
+    recording.changes = all.at("changes").get<std::vector<Change>>();
+    recording.frames = all.at("frames");
+    recording.fingerprint = all.at("fingerprint");
+    for (const json& one : all.at("inputs")) {
+        recording.inputs.push_back(to_input(one));
+        const auto& list = recording.inputs;
+        if (list.back().at < (list.size() > 1 ? list[list.size() - 2].at : 0))
+            throw std::string("inputs that go back in time");
+    }
+    return recording;
+}
+
+}  // namespace
+
+void write_recording(const Recording& recording, const std::filesystem::path& file) {
+    json all = {{"palpate-recording", version},
+                {"scene",
+                 {{"name", recording.scene.name},
+                  {"folder", recording.scene.folder.string()},
+                  {"text", recording.scene.text}}},
+                {"changes", recording.changes},
+                {"frames", recording.frames},
+                {"fingerprint", recording.fingerprint},
+                {"inputs", json::array()}};
+    for (const Input& input : recording.inputs) all["inputs"].push_back(of_input(input));
+    write_text(file, all.dump(1) + "\n");
+}
+
+Recording read_recording(const std::filesystem::path& file) {
+    auto fail = [&](std::string_view what) -> Recording {
+        throw Error(what, file.string(), "give a file that the viewer saved as a recording");
+    };
+    try {
+        return to_recording(json::parse(read_text(file)));
+    } catch (const json::exception& error) {
+        return fail(error.what());
+    } catch (const std::string& what) {
+        return fail(what);
+    }
+}
+
+}  // namespace palpate

@@ -1,0 +1,167 @@
+#include "palpate/run/scenery.h"
+
+#include "palpate/render/shapes.h"
+#include "palpate/run/run.h"
+
+namespace palpate {
+namespace {
+
+constexpr float collider_shine = 0.4f;
+
+vec3 middle(const Model& model) {
+    Bounds box;
+    for (vec3 p : model.surface.positions) box.include(p);
+    if (box.empty())
+        for (vec3 p : model.body.positions) box.include(p);
+    return box.centre();
+}
+
+// Behind a tip at the origin; nothing to see if it has none.
+Collider shaft_of(const ToolRecipe& tool) {
+    if (!(tool.shaft > 0)) return {Sphere{}};
+    return {Capsule{vec3(0), -tool.shaft * glm::normalize(tool.along), tool.radius}};
+}
+
+Look look_of(const BodyRecipe& recipe, const Model& model, Renderer& renderer) {
+    Look look{recipe.colour, recipe.shine};
+    if (model.colour_map.width > 0) look.colour_map = renderer.add(model.colour_map, Texels::colours);
+    if (model.normal_map.width > 0) look.normal_map = renderer.add(model.normal_map, Texels::normals);
+    look.shows_normals = recipe.shade == Shade::normals;
+    return look;
+}
+
+}  // namespace
+
+Scenery::Scenery(const Scene& scene, const Models& made, Renderer& renderer, Mapped mapped)
+    : scene_(&scene), made_(&made), mapped_(mapped) {
+    for (std::size_t m = 0; m < made.models.size(); ++m) {
+        const Model& model = made.models[m];
+        const bool hangs = mapped == Mapped::either || mapped_where_drawn(m);
+        meshes_.push_back(hangs ? renderer.add(model.surface, model.embedding) : renderer.add(model.surface));
+        looks_.push_back(look_of(scene.bodies[m], model, renderer));
+    }
+    for (std::size_t s = 0; s < made.stills.size(); ++s) {
+        const BodyRecipe& recipe = scene.surfaces[s];
+        meshes_.push_back(renderer.add(made.stills[s].surface));
+        looks_.push_back({.colour = recipe.colour,
+                          .shine = recipe.shine,
+                          .shows_normals = recipe.shade == Shade::normals});
+    }
+    for (const Collider& collider : made.simulation.colliders)
+        shapes_.push_back(shape_of(collider, renderer));
+    for (const ToolRecipe& tool : scene.tools) shafts_.push_back(shape_of(shaft_of(tool), renderer));
+    dents_.resize(meshes_.size());
+}
+
+Scenery::Shape Scenery::shape_of(const Collider& collider, Renderer& renderer) const {
+    Shape shape;
+    shape.rest = shape.now = shape_mesh(collider);
+    if (!shape.rest.triangles.empty()) shape.mesh = renderer.add(shape.rest);
+    return shape;
+}
+
+// Where a GPU moves the nodes, surfaces follow them there; normal maps want tangents, which go that way too.
+bool Scenery::mapped_where_drawn(std::size_t body) const {
+    return on_gpu(made_->simulation.backend) || made_->models[body].normal_map.width > 0;
+}
+
+Camera camera_of(const Scene& scene, const Models& made) {
+    Camera camera = scene.camera;
+    if (const auto* point = std::get_if<vec3>(&scene.look_at)) {
+        camera.look_at = *point;
+        return camera;
+    }
+    const std::string& name = std::get<std::string>(scene.look_at);
+    for (const Model& model : made.models)
+        if (model.body.name == name) camera.look_at = middle(model);
+    for (const Still& still : made.stills)
+        if (still.name == name) camera.look_at = bounds(still.surface).centre();
+    return camera;
+}
+
+Picture Scenery::picture(double time, const Play& play, const Camera& camera, bool springs) {
+    Picture picture;
+    picture.camera = camera;
+    picture.light = scene_->light;
+    add_bodies(play, springs, picture);
+    for (std::size_t s = made_->models.size(); s < meshes_.size(); ++s) {
+        const Skin& skin = play.skins()[s];
+        picture.surfaces.push_back(
+            {.mesh = meshes_[s], .positions = skin.positions, .normals = skin.normals, .look = looks_[s]});
+    }
+    for (std::size_t s = 0; s < meshes_.size(); ++s) {
+        dents_[s] = play.dents(s);
+        picture.surfaces[s].dents = dents_[s];
+    }
+    add_shafts(play, picture);
+    add_tools(play, picture);
+    add_colliders(play.colliders(time, frame_seconds), picture);
+    return picture;
+}
+
+void Scenery::add_bodies(const Play& play, bool springs, Picture& picture) {
+    if (springs && springs_.empty())
+        for (const Model& model : made_->models) springs_.push_back(spring_ends(model.body));
+    for (std::size_t m = 0; m < made_->models.size(); ++m) {
+        Surface& surface = picture.surfaces.emplace_back();
+        surface.mesh = meshes_[m];
+        surface.look = looks_[m];
+        surface.gpu_nodes = play.gpu_nodes(m);
+        if (surface.gpu_nodes.positions == 0 && mapped_where_drawn(m)) {
+            surface.nodes = play.nodes(m);
+        } else if (surface.gpu_nodes.positions == 0) {
+            surface.positions = play.skins()[m].positions;
+            surface.normals = play.skins()[m].normals;
+        }
+        if (springs) picture.wires.push_back({play.nodes(m).positions, springs_[m], {}});
+    }
+}
+
+void Scenery::add_shafts(const Play& play, Picture& picture) {
+    for (std::size_t t = 0; t < play.tools().size(); ++t) {
+        const auto& tool = play.tools()[t];
+        auto& [rest, now, mesh] = shafts_[t];
+        if (!tool || rest.triangles.empty()) continue;
+        for (std::size_t i = 0; i < rest.positions.size(); ++i)
+            now.positions[i] = tool->centre + rest.positions[i];
+        picture.surfaces.push_back(
+            {mesh, now.positions, now.normals, {scene_->tools[t].colour, collider_shine}});
+    }
+}
+
+void Scenery::add_tools(const Play& play, Picture& picture) {
+    drag_points_.clear();
+    drag_lines_.clear();
+    for (std::size_t t = 0; t < play.tools().size(); ++t) {
+        const auto& tool = play.tools()[t];
+        if (!tool) continue;
+        picture.balls.push_back({tool->centre, scene_->tools[t].radius, scene_->tools[t].colour});
+        if (!tool->held) continue;
+        drag_lines_.push_back(uvec2(drag_points_.size(), drag_points_.size() + 1));
+        drag_points_.insert(drag_points_.end(), {*tool->held, tool->centre});
+    }
+    if (!drag_lines_.empty()) picture.wires.push_back({drag_points_, drag_lines_, {}});
+}
+
+void Scenery::add_colliders(const std::vector<Motion>& motions, Picture& picture) {
+    for (std::size_t c = 0; c < motions.size(); ++c) {
+        const Motion& motion = motions[c];
+        const auto& shape = made_->simulation.colliders[c].shape;
+        const vec3 colour = scene_->colliders[c].colour;
+        if (const auto* plane = std::get_if<Plane>(&shape)) {
+            const vec3 normal = motion.rotation * plane->normal;
+            picture.grounds.push_back({normal, plane->offset + glm::dot(normal, motion.position)});
+        } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+            const vec3 centre = motion.position + motion.rotation * sphere->centre;
+            picture.balls.push_back({centre, sphere->radius, colour});
+        } else if (auto& [rest, now, mesh] = shapes_[c]; !rest.triangles.empty()) {
+            for (std::size_t i = 0; i < rest.positions.size(); ++i) {
+                now.positions[i] = motion.position + motion.rotation * rest.positions[i];
+                now.normals[i] = motion.rotation * rest.normals[i];
+            }
+            picture.surfaces.push_back({mesh, now.positions, now.normals, {colour, collider_shine}});
+        }
+    }
+}
+
+}  // namespace palpate

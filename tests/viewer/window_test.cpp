@@ -1,0 +1,364 @@
+// The window on a display of its own (Xvfb), driven by the events of a real mouse and keyboard as the X
+// server makes them.
+#include "app/viewer/window.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/mesh/write.h"
+#include "tests/scratch.h"
+#include "tests/shapes.h"
+
+#include <X11/Xatom.h>
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <X11/extensions/XTest.h>
+#include <X11/keysym.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+// A display that nobody sees, for as long as it lives.
+class Xvfb {
+ public:
+    Xvfb() {
+        if (pipe(ends_) != 0) return;
+        child_ = fork();
+        if (child_ == 0) {
+            close(ends_[0]);
+            const std::string to = std::to_string(ends_[1]);
+            freopen("/dev/null", "w", stderr);
+            execlp("Xvfb", "Xvfb", "-displayfd", to.c_str(), "-screen", "0", "1280x1024x24", "-nolisten",
+                   "tcp", "-noreset", static_cast<char*>(nullptr));
+            _exit(127);
+        }
+        close(ends_[1]);
+        char number[16] = {};
+        const ssize_t length = ::read(ends_[0], number, sizeof number - 1);
+        if (length > 0) name_ = fmt::format(":{}", std::atoi(number));
+        for (const double start = now(); !name_.empty() && !answers() && now() - start < 10;) usleep(20'000);
+    }
+    ~Xvfb() {
+        if (child_ <= 0) return;
+        kill(child_, SIGTERM);
+        waitpid(child_, nullptr, 0);
+        ::close(ends_[0]);  // not before, because it may yet write there
+    }
+    const std::string& name() const { return name_; }  // empty where there is no such program
+
+ private:
+    bool answers() const {
+        Display* display = XOpenDisplay(name_.c_str());
+        if (display) XCloseDisplay(display);
+        return display;
+    }
+
+    pid_t child_ = -1;
+    int ends_[2] = {-1, -1};  // of a pipe by which it tells its number
+    std::string name_;
+};
+
+// The people's side of the display: their hands and eyes.
+class Person {
+ public:
+    explicit Person(const std::string& display) : display_(XOpenDisplay(display.c_str())) {}
+    ~Person() { XCloseDisplay(display_); }
+
+    void move(vec2 to) {
+        XTestFakeMotionEvent(display_, -1, int(to.x), int(to.y), 0);
+        XSync(display_, False);
+    }
+    void button(unsigned number, bool down) {
+        XTestFakeButtonEvent(display_, number, down, 0);
+        XSync(display_, False);
+    }
+    void key(KeySym symbol, bool control = false) {
+        auto press = [&](KeySym one, bool down) {
+            XTestFakeKeyEvent(display_, XKeysymToKeycode(display_, one), down, 0);
+        };
+        if (control) press(XK_Control_L, true);
+        press(symbol, true);
+        press(symbol, false);
+        if (control) press(XK_Control_L, false);
+        XSync(display_, False);
+    }
+    void resize(unsigned width, unsigned height) {
+        XResizeWindow(display_, window(), width, height);
+        XSync(display_, False);
+    }
+    void close() {
+        const Atom protocols = XInternAtom(display_, "WM_PROTOCOLS", False);
+        send(window(), protocols,
+             {long(XInternAtom(display_, "WM_DELETE_WINDOW", False)), CurrentTime, 0, 0, 0});
+    }
+
+    // What is on the screen, of a window's size.
+    std::vector<std::uint8_t> look() {
+        XWindowAttributes at;
+        XGetWindowAttributes(display_, window(), &at);
+        XImage* image =
+            XGetImage(display_, window(), 0, 0, unsigned(at.width), unsigned(at.height), AllPlanes, ZPixmap);
+        std::vector<std::uint8_t> pixels;
+        for (int y = 0; y < at.height; ++y)
+            for (int x = 0; x < at.width; ++x) {
+                const unsigned long pixel = XGetPixel(image, x, y);
+                for (int shift : {16, 8, 0}) pixels.push_back(std::uint8_t(pixel >> shift));
+            }
+        XDestroyImage(image);
+        return pixels;
+    }
+
+    // Drops a file, as a file manager does (the XDND protocol, version 5). `round`: lets the window go on.
+    void drop(const std::string& file, const std::function<void()>& round) {
+        const XID target = window();
+        const XID source = XCreateSimpleWindow(display_, DefaultRootWindow(display_), 0, 0, 1, 1, 0, 0, 0);
+        const Atom list = atom("text/uri-list"), selection = atom("XdndSelection");
+        XSetSelectionOwner(display_, selection, source, CurrentTime);
+        send(target, atom("XdndEnter"), {long(source), 5l << 24, long(list), 0, 0});
+        send(target, atom("XdndPosition"),
+             {long(source), 0, 640l << 16 | 400, CurrentTime, long(atom("XdndActionCopy"))});
+        round();
+        send(target, atom("XdndDrop"), {long(source), 0, CurrentTime, 0, 0});
+        const std::string text = "file://" + file + "\r\n";
+        const double start = now();
+        for (bool served = false; !served && now() - start < 10;) {
+            // The window may wait for the answer within a round: so it is given from here, between two.
+            while (XPending(display_)) {
+                XEvent event;
+                XNextEvent(display_, &event);
+                if (event.type != SelectionRequest) continue;
+                const XSelectionRequestEvent& asked = event.xselectionrequest;
+                XChangeProperty(display_, asked.requestor, asked.property, asked.target, 8, PropModeReplace,
+                                reinterpret_cast<const unsigned char*>(text.data()), int(text.size()));
+                XEvent answer = {};
+                answer.xselection = {SelectionNotify,
+                                     0,
+                                     True,
+                                     display_,
+                                     asked.requestor,
+                                     asked.selection,
+                                     asked.target,
+                                     asked.property,
+                                     asked.time};
+                XSendEvent(display_, asked.requestor, False, 0, &answer);
+                XSync(display_, False);
+                served = true;
+            }
+            round();
+        }
+        round();
+        XDestroyWindow(display_, source);
+        XSync(display_, False);
+    }
+
+ private:
+    Atom atom(const char* name) { return XInternAtom(display_, name, False); }
+
+    // The one that is shown.
+    XID window() {
+        XID root, parent, *children = nullptr, found = 0;
+        unsigned count = 0;
+        XQueryTree(display_, DefaultRootWindow(display_), &root, &parent, &children, &count);
+        for (unsigned i = 0; i < count; ++i) {
+            XWindowAttributes at;
+            XGetWindowAttributes(display_, children[i], &at);
+            if (at.map_state == IsViewable && at.c_class == InputOutput) found = children[i];
+        }
+        XFree(children);
+        return found;
+    }
+
+    void send(XID to, Atom type, std::array<long, 5> data) {
+        XEvent event = {};
+        event.xclient.type = ClientMessage;
+        event.xclient.window = to;
+        event.xclient.message_type = type;
+        event.xclient.format = 32;
+        std::copy(data.begin(), data.end(), event.xclient.data.l);
+        XSendEvent(display_, to, False, NoEventMask, &event);
+        XSync(display_, False);
+    }
+
+    Display* display_;
+};
+
+double difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    if (a.size() != b.size() || a.empty()) return NAN;
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(int(a[i]) - int(b[i]));
+    return sum / double(a.size());
+}
+
+class WindowTest : public testing::Test {
+ protected:
+    void SetUp() override {
+        if (xvfb.name().empty()) GTEST_SKIP() << "not available: the program Xvfb";
+        setenv("DISPLAY", xvfb.name().c_str(), 1);
+        window = std::make_unique<palpate::Window>(ivec2(640, 480));
+        person = std::make_unique<Person>(xvfb.name());
+        window->viewer().options.care = Care::full;
+        window->gui().shows_panel = false;
+    }
+    void rounds(int count) {
+        for (int i = 0; i < count; ++i) window->round();
+    }
+    void open(const char* scene) {
+        window->viewer().open(find_scene(scene));
+        const double start = now();
+        while (window->viewer().importing() && now() - start < 60) rounds(1);
+        ASSERT_TRUE(window->viewer().experiment()) << window->viewer().message().text;
+        rounds(3);
+    }
+    Viewer& viewer() { return window->viewer(); }
+    vec2 middle() {
+        vec3 sum(0);
+        const auto& positions = viewer().experiment()->play().skins()[0].positions;
+        for (vec3 p : positions) sum += p;
+        return *pixel_of(viewer().camera(), sum / float(positions.size()), viewer().view_size());
+    }
+    void drag(vec2 from, vec2 to, unsigned button) {
+        person->move(from);
+        rounds(1);
+        person->button(button, true);
+        for (int i = 1; i <= 8; ++i) {
+            person->move(glm::mix(from, to, float(i) / 8));
+            rounds(1);
+        }
+    }
+
+    Xvfb xvfb;
+    std::unique_ptr<palpate::Window> window;
+    std::unique_ptr<Person> person;
+};
+
+TEST_F(WindowTest, OpensTurnsAndComesBack) {
+    open("box");
+    person->move(vec2(20, 460));
+    person->key(XK_space);  // pause
+    rounds(3);
+    ASSERT_TRUE(viewer().options.paused);
+    const vec3 eye = viewer().camera().eye;
+    // The hint and the messages lie over the picture until they go.
+    rounds(2);
+    const auto before = person->look();
+    drag(vec2(30, 440), vec2(200, 380), 3);
+    person->button(3, false);
+    rounds(3);
+    EXPECT_GT(glm::distance(viewer().camera().eye, eye), 0.05f);
+    EXPECT_GT(difference(person->look(), before), 1);
+    person->button(4, true), person->button(4, false);  // the wheel
+    rounds(2);
+    EXPECT_LT(glm::distance(viewer().camera().eye, viewer().camera().look_at),
+              0.95f * glm::distance(eye, viewer().camera().look_at));
+    person->key(XK_Home);
+    rounds(3);
+    EXPECT_EQ(viewer().camera().eye, eye);
+    EXPECT_TRUE(difference(person->look(), before) < 1) << difference(person->look(), before);
+}
+
+TEST_F(WindowTest, GrabsDragsAndReleasesWhileTheBackendChanges) {
+    open("box");
+    rounds(20);
+    const double before = viewer().experiment()->play().save()[0].positions[456].y;
+    const vec2 from = middle();
+    drag(from, from + vec2(0, -120), 1);
+    ASSERT_EQ(viewer().holds().size(), 1u);
+    for (const char* backend : {"reference", "feedback", "cpu"}) {
+        viewer().change({std::string("simulation.backend=\"") + backend + "\""});
+        rounds(4);
+        EXPECT_EQ(viewer().holds().size(), 1u) << backend << ": " << viewer().message().text;
+    }
+    for (int i = 0; i < 120 && viewer().experiment()->time() < 3; ++i) rounds(1);
+    EXPECT_GT(viewer().experiment()->play().save()[0].positions[456].y, before + 0.002);
+    person->button(1, false);
+    rounds(2);
+    EXPECT_TRUE(viewer().holds().empty());
+    EXPECT_TRUE(viewer().experiment()->trouble().empty());
+}
+
+TEST_F(WindowTest, KeysAreHeard) {
+    open("box");
+    person->move(vec2(300, 200));
+    rounds(1);
+    person->key(XK_2);
+    rounds(2);
+    EXPECT_EQ(viewer().options.mode, Mode::press);
+    person->key(XK_w);
+    rounds(2);
+    EXPECT_TRUE(viewer().options.look.wireframe);
+    viewer().change({"body.1.damping=7"});
+    person->key(XK_z, true);
+    rounds(3);
+    EXPECT_EQ(viewer().experiment()->scene().bodies[0].material.damping, 2);
+    person->key(XK_Tab);
+    rounds(2);
+    EXPECT_TRUE(window->gui().shows_panel);
+}
+
+TEST_F(WindowTest, ABrokenFileIsDroppedThenAGoodOne) {
+    const Scratch scratch;
+    open("box");
+    write_text(scratch / "broken.ply", "ply\nformat ascii 1.0\n");
+    person->drop((scratch / "broken.ply").string(), [&] { rounds(1); });
+    const double start = now();
+    while (!viewer().message().bad && now() - start < 20) rounds(1);
+    EXPECT_NE(viewer().message().text.find("broken.ply"), std::string::npos) << viewer().message().text;
+    EXPECT_EQ(viewer().experiment()->source().name, "box");
+    write_mesh(ellipsoid(vec3(0.1f), 12), scratch / "ball.ply");
+    person->drop((scratch / "ball.ply").string(), [&] { rounds(1); });
+    while (viewer().experiment()->source().name == "box" && now() - start < 60) rounds(1);
+    EXPECT_EQ(viewer().experiment()->source().name, "ball") << viewer().message().text;
+}
+
+TEST_F(WindowTest, ResizesToNothingAndBack) {
+    open("box");
+    for (auto [width, height] : {std::pair(1u, 1u), {2u, 900u}, {1100u, 3u}, {800u, 600u}}) {
+        person->resize(width, height);
+        rounds(4);
+        EXPECT_EQ(viewer().size(), ivec2(width, height));
+    }
+    EXPECT_EQ(person->look().size(), 3u * 800 * 600);
+    drag(middle(), middle() + vec2(20, 0), 1);
+    EXPECT_EQ(viewer().holds().size(), 1u);
+    person->button(1, false);
+}
+
+TEST_F(WindowTest, ClosesWhileItImports) {
+    viewer().open(find_scene("brain"));
+    rounds(3);
+    ASSERT_TRUE(viewer().importing());
+    person->close();
+    bool open = true;
+    for (int i = 0; i < 20 && open; ++i) open = window->round();
+    EXPECT_FALSE(open);
+    window.reset();
+}
+
+TEST(NoWindow, WithoutADisplayItSaysSo) {
+    const char* before = std::getenv("DISPLAY");
+    const std::string kept = before ? before : "";
+    setenv("DISPLAY", ":6553", 1);
+    try {
+        const palpate::Window window;
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("--headless"), std::string::npos) << error.what();
+    }
+    before ? setenv("DISPLAY", kept.c_str(), 1) : unsetenv("DISPLAY");
+}
+
+}  // namespace
+}  // namespace palpate
