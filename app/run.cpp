@@ -115,7 +115,9 @@ void run_scene(Arguments& arguments) {
         arguments.changes.push_back("simulation.integrator=\"" + arguments.integrator + "\"");
     set_size(arguments.size, arguments.settings);
     if (arguments.rest) set_rest(*arguments.rest, arguments.settings);
-    if (!arguments.headless && !wants_files(arguments)) return view(arguments.scene, arguments.changes);
+    if (!arguments.headless && !wants_files(arguments))
+        return view(arguments.scene, arguments.changes, {arguments.settings.width, arguments.settings.height},
+                    arguments.settings.lattice);
     if (arguments.scene.ends_with(".json")) return replay(arguments.scene);
     Scene scene = read_scene(arguments.scene, arguments.changes);
     scene.simulation.force = arguments.force;
@@ -155,7 +157,8 @@ void add_run(CLI::App& app) {
         ->expected(0, 1)
         ->excludes(frames)
         ->excludes(steps);
-    command->add_option("--size", arguments->size, "of the pictures, in pixels")->capture_default_str();
+    command->add_option("--size", arguments->size, "of the window or the pictures, in pixels")
+        ->capture_default_str();
     command->add_option("--video", settings.video, "write a film, MP4 (needs ffmpeg)");
     command->add_option("--images", settings.images, "write PNG pictures into this folder");
     command->add_option("--image-every", settings.image_every, "s between those pictures")

@@ -2,14 +2,16 @@
 
 #include "app/viewer/window.h"
 
-void view(const std::string& file, const std::vector<palpate::Change>& changes) {
+void view(const std::string& file, const std::vector<palpate::Change>& changes, palpate::ivec2 size,
+          bool lattice) {
     using namespace palpate;
     // What is wrong with a scene is said here rather than in a window.
     const bool recorded = file.ends_with(".json");
     const SceneText scene = recorded ? SceneText{} : find_scene(file);
     if (!recorded) parse_scene(scene, changes);
     const Recording recording = recorded ? read_recording(file) : Recording{};
-    Window window;
+    Window window(size);
+    window.viewer().options.look.springs = lattice;
     if (recorded)
         window.viewer().replay(recording);
     else

@@ -50,7 +50,7 @@ constexpr KeyHelp keys[] = {
 void colours(float scale) {
     ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
-    style.WindowRounding = 6;
+    style.WindowRounding = 0;
     style.FrameRounding = style.GrabRounding = style.ScrollbarRounding = 4;
     style.WindowBorderSize = 0;
     style.ItemSpacing = {8, 6};
@@ -276,10 +276,10 @@ void show_comparison(Viewer& viewer) {
     if (compared.with == Compared::With::backend) choose("its backend", compared.backend);
 }
 
-void plot(const char* name, const Curve& curve) {
-    auto value = [](void* data, int i) { return static_cast<const Curve*>(data)->at(std::size_t(i)); };
+void plot(const char* name, const Recent& curve) {
+    auto value = [](void* data, int i) { return static_cast<const Recent*>(data)->at(std::size_t(i)); };
     const std::string text = fmt::format("{} {:.1f} ms", name, curve.mean());
-    ImGui::PlotLines("##", value, const_cast<Curve*>(&curve), int(curve.count()), 0, text.c_str(), 0,
+    ImGui::PlotLines("##", value, const_cast<Recent*>(&curve), int(curve.count()), 0, text.c_str(), 0,
                      std::max(curve.most(), 1.0f),
                      {ImGui::GetContentRegionAvail().x, 2.6f * ImGui::GetFontSize()});
 }
@@ -347,14 +347,14 @@ void show_steering(Viewer& viewer) {
 }
 
 void show_panel(Viewer& viewer, float scale) {
-    ImGui::SetNextWindowPos({10 * scale, 10 * scale});
-    ImGui::SetNextWindowSize({panel_width * scale, 0});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {panel_width * scale, float(viewer.size().y) - 60 * scale});
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({panel_width * scale, ImGui::GetIO().DisplaySize.y});
     const Experiment& experiment = *viewer.experiment();
     const std::string title =
         fmt::format("{}   {:.1f} s###panel", std::filesystem::path(experiment.source().name).stem().string(),
                     experiment.time());
-    if (ImGui::Begin(title.c_str(), nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
+    if (ImGui::Begin(title.c_str(), nullptr,
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse)) {
         ImGui::PushItemWidth(-110 * scale);
         auto part = [](const char* name, bool open, auto show) {
             if (ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) show();
@@ -393,13 +393,20 @@ constexpr ImGuiWindowFlags bare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFla
                                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
-void middle_window(const Viewer& viewer, float height) {
-    ImGui::SetNextWindowPos({0.5f * float(viewer.size().x), height * float(viewer.size().y)}, 0,
-                            {0.5f, 0.5f});
+// Over the picture, so far from its upper edge.
+void over_picture(const Viewer& viewer, float height, float pivot) {
+    ImGui::SetNextWindowPos({float(viewer.left()) + 0.5f * float(viewer.size().x), height}, 0, {0.5f, pivot});
 }
 
+void in_middle(const Viewer& viewer, float part) {
+    over_picture(viewer, part * float(viewer.size().y), 0.5f);
+}
+
+// A place in the picture as a place in the window.
+ImVec2 in_window(const Viewer& viewer, vec2 pixel) { return {float(viewer.left()) + pixel.x, pixel.y}; }
+
 void show_start(Viewer& viewer) {
-    middle_window(viewer, 0.5f);
+    in_middle(viewer, 0.5f);
     ImGui::Begin("start", nullptr, bare);
     ImGui::Text("Drop a mesh, a volume or a scene here, or choose one:");
     int number = 0;
@@ -414,7 +421,7 @@ void show_start(Viewer& viewer) {
 
 void show_import(Viewer& viewer) {
     const Import::State state = viewer.importing()->state();
-    middle_window(viewer, viewer.experiment() ? 0.9f : 0.7f);
+    in_middle(viewer, viewer.experiment() ? 0.9f : 0.7f);
     ImGui::Begin("import", nullptr, bare);
     ImGui::Text("opening %s", viewer.importing()->name().c_str());
     ImGui::ProgressBar(float(state.fraction), {22 * ImGui::GetFontSize(), 0});
@@ -442,14 +449,16 @@ void show_message(const Viewer& viewer, float scale) {
 // The first thing to do, until it is done.
 void show_hint(const Viewer& viewer, bool touched, float scale) {
     if (touched || viewer.importing()) return;
-    ImGui::SetNextWindowPos({0.5f * float(viewer.size().x), 14 * scale}, 0, {0.5f, 0});
+    over_picture(viewer, 14 * scale, 0);
     ImGui::Begin("hint", nullptr, bare | ImGuiWindowFlags_NoInputs);
     ImGui::Text("Drag the surface with the left button.  The right button turns, the wheel zooms.");
     ImGui::End();
 }
 
 void show_help_window(const Viewer& viewer, bool& open) {
-    middle_window(viewer, 0.5f);
+    in_middle(viewer, 0.5f);
+    ImGui::SetNextWindowBgAlpha(0.97f);
+    ImGui::SetNextWindowFocus();
     ImGui::Begin("keys", nullptr, bare & ~ImGuiWindowFlags_NoFocusOnAppearing);
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) {
         for (const KeyHelp& one : keys) {
@@ -482,16 +491,29 @@ void draw_arrow(const Viewer& viewer, const Viewer::Arrow& arrow, float scale) {
     if (length > 4) {
         const vec2 along = way / length, across(-along.y, along.x);
         const vec2 neck = *to - 10 * scale * along;
-        auto at = [](vec2 p) { return ImVec2(p.x, p.y); };
+        auto at = [&](vec2 p) { return in_window(viewer, p); };
         list.AddLine(at(*from), at(neck), dark, 5 * scale);
         list.AddLine(at(*from), at(neck), colour, 3 * scale);
         list.AddTriangleFilled(at(*to), at(neck + 6 * scale * across), at(neck - 6 * scale * across), colour);
     }
     const std::string text = fmt::format("{:.2f} N", newtons);
-    const ImVec2 corner(to->x + 8 * scale, to->y - 8 * scale);
+    const ImVec2 corner = in_window(viewer, *to + vec2(8, -8) * scale);
     const ImVec2 box = ImGui::CalcTextSize(text.c_str());
     list.AddRectFilled({corner.x - 3, corner.y - 2}, {corner.x + box.x + 3, corner.y + box.y + 2}, dark, 3);
     list.AddText(corner, IM_COL32_WHITE, text.c_str());
+}
+
+// How large the tip is that dents.
+void draw_tip(const Viewer& viewer, float scale) {
+    if (!viewer.feeling()) return;
+    const Camera& camera = viewer.camera();
+    const vec3 centre = viewer.feeling()->felt().proxy, to = camera.look_at - camera.eye;
+    const vec3 aside = viewer.options.tip * glm::normalize(glm::cross(to, camera.up));
+    const auto middle = pixel_of(camera, centre, viewer.view_size());
+    const auto rim = pixel_of(camera, centre + aside, viewer.view_size());
+    if (!middle || !rim) return;
+    ImGui::GetBackgroundDrawList()->AddCircle(in_window(viewer, *middle), glm::distance(*middle, *rim),
+                                              IM_COL32(90, 175, 245, 255), 48, 2 * scale);
 }
 
 void label_views(const Viewer& viewer, float scale) {
@@ -503,7 +525,8 @@ void label_views(const Viewer& viewer, float scale) {
                                    : name_of(one.scene().bodies.front().mapping));
     };
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const float middle = float(viewer.view_size().x), bottom = float(viewer.size().y) - 40 * scale;
+    const float middle = float(viewer.left() + viewer.view_size().x),
+                bottom = float(viewer.size().y) - 40 * scale;
     list.AddLine({middle, 0}, {middle, float(viewer.size().y)}, IM_COL32(0, 0, 0, 200), 2 * scale);
     const std::string left = name(*viewer.experiment()), right = name(*viewer.beside());
     list.AddText({middle - ImGui::CalcTextSize(left.c_str()).x - 12 * scale, bottom}, IM_COL32_WHITE,
@@ -531,6 +554,11 @@ Gui::~Gui() {
     ImGui::DestroyContext(context_);
 }
 
+int Gui::beside(const Viewer& viewer, int window) const {
+    const int width = int(panel_width * scale_);
+    return shows_panel && viewer.experiment() && window >= 2 * width ? width : 0;
+}
+
 bool Gui::wants_pointer() const { return ImGui::GetIO().WantCaptureMouse; }
 bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
 
@@ -538,6 +566,7 @@ void Gui::draw(Viewer& viewer) {
     if (!viewer.experiment() && !viewer.importing()) show_start(viewer);
     if (viewer.experiment()) {
         for (const Viewer::Arrow& arrow : viewer.arrows()) draw_arrow(viewer, arrow, scale_);
+        draw_tip(viewer, scale_);
         label_views(viewer, scale_);
         if (shows_panel) show_panel(viewer, scale_);
         show_hint(viewer, viewer.touched(), scale_);

@@ -22,6 +22,9 @@ class Gui {
     /// A key by its letter (A to Z), digit or sign; one that is bound to nothing does nothing.
     void key(Viewer& viewer, char key, bool control, bool shift);
 
+    /// How wide the controls are that stand beside the picture in a window of such a width, pixels.
+    int beside(const Viewer& viewer, int window) const;
+
     /// Whether the pointer is over a control, and whether letters are being written into one.
     bool wants_pointer() const;
     bool wants_keys() const;

@@ -11,7 +11,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t most_threads_of_a_hold = 4;  // of the 8 drags that a body takes
-constexpr float beyond = 0.1f;  // m around a hand that it knows: more than it goes before the next picture
+constexpr float beyond = 0.04f;  // m around a hand that it knows: it goes no farther before the next picture
 
 float width_of(const Body& body) {
     Bounds box;
@@ -35,14 +35,15 @@ Hold Hold::pulling(const Experiment& experiment, const Hit& hit) {
                       [&](int a, int b) { return distance(a) < distance(b); });
     nearest.resize(count);
     Hold hold;
+    const float strength = strength_for(body).pull;
     for (int node : nearest)
         if (distance(node) < distance(nearest[0]) + 1.5f * body.spacing)
-            hold.threads_.push_back({node, positions[std::size_t(node)] - hit.place});
+            hold.threads_.push_back({node, positions[std::size_t(node)] - hit.place,
+                                     strength / body.inverse_mass[std::size_t(node)]});
     if (hold.threads_.empty())
         throw Error("no node to pull that is free", "body " + body.name, "let go of some pins");
     hold.body_ = hit.surface;
     hold.nodes_ = body.count();
-    hold.stiffness_ = strength_for(body).pull;
     hold.fastest_ = 3 * width_of(body);
     hold.place_ = hold.target_ = hit.place;
     return hold;
@@ -72,7 +73,7 @@ void Hold::add_to(Hands& hands) {
     const vec3 velocity = step / float(frame_seconds);
     if (presses()) hands.presses.push_back({place_, velocity, radius_, stiffness_});
     for (const Thread& thread : threads_)
-        hands.pulls.push_back({body_, {thread.node, place_ + thread.offset, velocity, stiffness_}});
+        hands.pulls.push_back({body_, {thread.node, place_ + thread.offset, velocity, thread.stiffness}});
     place_ += step;
 }
 

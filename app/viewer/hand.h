@@ -59,16 +59,17 @@ class Hold {
     bool fits(const Experiment& experiment) const;
 
  private:
-    // A node on its way, and how far off the hand it is to be.
+    // A node on its way, how far off the hand it is to be, and how strongly.
     struct Thread {
         int node;
-        vec3 offset;  // m
+        vec3 offset;      // m
+        float stiffness;  // N/m
     };
 
     std::size_t body_ = 0, nodes_ = 0;
     std::vector<Thread> threads_;
     float radius_ = 0;     // m, of a tip
-    float stiffness_ = 0;  // N/m, of a tip, or of each thread
+    float stiffness_ = 0;  // N/m, of a tip
     float fastest_ = 1;    // m/s
     vec3 place_ = vec3(0), target_ = vec3(0);
 };

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <thread>
 
 namespace palpate {
 namespace {
@@ -60,20 +60,23 @@ Camera eye_of(Camera camera, float side) {
 
 }  // namespace
 
-float Curve::mean() const {
+float Recent::mean() const {
     float sum = 0;
     for (std::size_t i = 0; i < count_; ++i) sum += at(i);
     return count_ > 0 ? sum / float(count_) : 0;
 }
 
-float Curve::most() const {
+float Recent::most() const {
     float most = 0;
     for (std::size_t i = 0; i < count_; ++i) most = std::max(most, at(i));
     return most;
 }
 
 Viewer::Viewer(const gl::Context& context, ivec2 size)
-    : context_(context), size_(glm::max(size, ivec2(1))), left_(context, size_), right_(context, ivec2(16)) {}
+    : context_(context),
+      size_(glm::max(size, ivec2(1))),
+      view_(context, size_),
+      other_view_(context, ivec2(16)) {}
 
 Viewer::~Viewer() = default;
 
@@ -92,8 +95,13 @@ void Viewer::attempt(const std::function<void()>& what) noexcept {
 
 // ---- what is open ----
 
+// On all cores unless told otherwise: the motion is the same, and drawing waits for it.
 void Viewer::open(SceneText source, std::vector<Change> changes) {
     replay_.reset();
+    const unsigned cores = std::clamp(std::thread::hardware_concurrency(), 1u, 8u);
+    const bool told = std::ranges::any_of(
+        changes, [](const Change& change) { return change.starts_with("simulation.threads="); });
+    if (!told) changes.push_back(fmt::format("simulation.threads={}", cores));
     import_ = std::make_unique<Import>(std::move(source), std::move(changes));
 }
 
@@ -107,7 +115,7 @@ void Viewer::open_file(const std::filesystem::path& file) noexcept {
 }
 
 void Viewer::replay(Recording recording) {
-    open(recording.scene, recording.changes);
+    import_ = std::make_unique<Import>(recording.scene, recording.changes);
     replay_ = std::move(recording);
 }
 
@@ -138,6 +146,7 @@ void Viewer::begin(Prepared prepared) {
     compared_ = {};
     experiment_ = std::move(experiment);
     frames_ = 0;
+    shapes_shown_ = -1;
     simulated_before_ = mapped_before_ = 0;
     readings_ = {};
     selected_.clear();
@@ -228,9 +237,10 @@ ivec2 Viewer::view_size() const {
     return glm::max(halved ? ivec2(size_.x / 2, size_.y) : size_, ivec2(1));
 }
 
-void Viewer::resize(ivec2 size) {
+void Viewer::resize(ivec2 size, int left) {
     if (size.x < 1 || size.y < 1) return;  // minimised: nothing is drawn until it has a size again
     size_ = size;
+    left_ = left;
 }
 
 namespace {
@@ -325,6 +335,7 @@ void Viewer::release(Button button) {
 }
 
 void Viewer::move_pointer(vec2 pixel) {
+    pixel.x -= float(left_);
     const vec2 by = pixel - pointer_;
     pointer_ = pixel;
     if (!experiment_) return;
@@ -334,7 +345,7 @@ void Viewer::move_pointer(vec2 pixel) {
         if (mouse_) mouse_->look(camera(), view_size());
         return;
     }
-    follow_pointer();
+    if (active_) follow_pointer();  // what feels does so once a picture
 }
 
 // What it holds goes along, as deep in the picture as it is.
@@ -536,9 +547,10 @@ Traces Viewer::traces() const {
     }
     if (!feeling_) return traces;
     const Felt felt = feeling_->felt();
-    traces.balls.push_back({felt.proxy, options.tip, proxy_colour});
+    // A small one, or it would hide the dent; the controls draw a ring as large as the tip.
+    traces.balls.push_back({felt.proxy, 0.25f * options.tip, proxy_colour});
     if (glm::distance(felt.hand, felt.proxy) > 0.05f * options.tip) {
-        traces.balls.push_back({felt.hand, 0.4f * options.tip, hand_colour});
+        traces.balls.push_back({felt.hand, 0.2f * options.tip, hand_colour});
         traces.lines.push_back(uvec2(traces.points.size(), traces.points.size() + 1));
         traces.points.insert(traces.points.end(), {felt.proxy, felt.hand});
     }
@@ -556,41 +568,44 @@ Quality Viewer::quality() {
 void Viewer::draw() {
     if (!experiment_) return;
     const double start = now();
+    const int shown = shapes_shown_;
     quality_ = quality();
     draw_views();
-    left_.show({0, 0});
-    if (beside_) right_.show({view_size().x, 0});
+    view_.show({left_, 0});
+    if (beside_) other_view_.show({left_ + view_size().x, 0});
     context_.finish();
-    readings_.draw.add(float(1000 * (now() - start)));
+    // Not the first one of a mesh, which finds out how deep its grooves are.
+    if (shown == shapes_shown_) readings_.draw.add(float(1000 * (now() - start)));
 }
 
 // Stereo shows the left view's renderer twice; the other picture goes beside it at once.
 void Viewer::draw_views() {
+    shapes_shown_ = experiment_->shapes();
     const Traces traces = this->traces();
-    left_.resize(view_size());
-    left_.set(quality_);
+    view_.resize(view_size());
+    view_.set(quality_);
     if (options.stereo && !beside_) {
-        left_.draw(*experiment_, eye_of(camera(), 1), options.look, traces);
-        left_.show({view_size().x, 0});
-        left_.draw(*experiment_, eye_of(camera(), -1), options.look, traces);
+        view_.draw(*experiment_, eye_of(camera(), 1), options.look, traces);
+        view_.show({left_ + view_size().x, 0});
+        view_.draw(*experiment_, eye_of(camera(), -1), options.look, traces);
         return;
     }
-    left_.draw(*experiment_, camera(), options.look, traces);
+    view_.draw(*experiment_, camera(), options.look, traces);
     if (!beside_) return;
-    right_.resize(view_size());
-    right_.set(quality_);
-    right_.draw(*beside_, camera(), options.look, traces);
+    other_view_.resize(view_size());
+    other_view_.set(quality_);
+    other_view_.draw(*beside_, camera(), options.look, traces);
 }
 
 Image Viewer::image() {
     quality_ = {};
     if (!experiment_) return {};
     draw_views();
-    Image left = left_.image();
-    if (beside_) return beside_each_other(left, right_.image());
+    Image left = view_.image();
+    if (beside_) return beside_each_other(left, other_view_.image());
     if (!options.stereo) return left;
-    left_.draw(*experiment_, eye_of(camera(), 1), options.look, traces());
-    return beside_each_other(left, left_.image());
+    view_.draw(*experiment_, eye_of(camera(), 1), options.look, traces());
+    return beside_each_other(left, view_.image());
 }
 
 // ---- files ----

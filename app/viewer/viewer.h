@@ -16,7 +16,7 @@
 namespace palpate {
 
 /// The last few seconds of something that is measured once a picture.
-class Curve {
+class Recent {
  public:
     static constexpr std::size_t length = 180;
     void add(float value) {
@@ -90,10 +90,12 @@ class Viewer {
     const Experiment* beside() const { return beside_.get(); }
     bool replaying() const { return bool(replay_); }
 
-    // ---- what a person does; places in pixels from the upper left corner ----
+    // ---- what a person does; places in pixels from the window's upper left corner ----
 
-    void resize(ivec2 size);
+    /// The picture is as large, and begins so far to the right in the window, beside its controls.
+    void resize(ivec2 size, int left = 0);
     ivec2 size() const { return size_; }
+    int left() const { return left_; }
     void move_pointer(vec2 pixel);
     void press(Button button, bool shift = false, bool alt = false);
     void release(Button button);
@@ -123,7 +125,7 @@ class Viewer {
 
     /// So many frames of 1/60 s, if it is not paused; and whatever has become ready meanwhile.
     void advance(int frames);
-    /// Into the framebuffer that is bound, which is as large as size().
+    /// Into the framebuffer that is bound.
     void draw();
     /// What is drawn, as it would be without a draft's haste, and without a window's frame or controls.
     Image image();
@@ -149,8 +151,8 @@ class Viewer {
     const FeelingHand* feeling() const { return feeling_.get(); }
     ivec2 view_size() const;  // of one of the pictures side by side
     struct Readings {
-        Curve simulate, map, draw;  // ms a picture
-        Curve pace;                 // s of the scene a second
+        Recent simulate, map, draw;  // ms a picture
+        Recent pace;                 // s of the scene a second
         Energy energy;
         double largest_speed = 0;  // m/s
         std::size_t memory = 0;    // bytes, of all moving states
@@ -182,7 +184,8 @@ class Viewer {
 
     const gl::Context& context_;
     ivec2 size_;
-    View left_, right_;
+    int left_ = 0;
+    View view_, other_view_;
     std::unique_ptr<Import> import_;
     std::unique_ptr<Experiment> experiment_, beside_;
     Compared compared_;  // what beside_ is
@@ -210,6 +213,7 @@ class Viewer {
     std::filesystem::path film_name_;
     long frames_ = 0;   // since it was opened
     double moved_ = 0;  // s, when something last moved
+    int shapes_shown_ = -1;
     Quality quality_;
     Readings readings_;
     double simulated_before_ = 0, mapped_before_ = 0, measured_ = 0, paced_ = 0;

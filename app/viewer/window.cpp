@@ -186,7 +186,8 @@ bool Window::round() {
     p.viewer.advance(frames);
     const ivec2 size = pixels(p.window);
     if (size.x < 1 || size.y < 1) return true;  // it is an icon
-    p.viewer.resize(size);
+    const int beside = p.gui.beside(p.viewer, size.x);
+    p.viewer.resize({size.x - beside, size.y}, beside);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, size.x, size.y);
     glClearColor(0.16f, 0.18f, 0.21f, 1);

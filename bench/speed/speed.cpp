@@ -140,7 +140,11 @@ const std::vector<Benchmark>& benchmarks() {
         plain("embed", "a surface of 160,000 vertices carried by its nodes", "vertices", embed_cases),
         pipeline(),
         heart(),
-        touch()};
+        touch(),
+#ifdef PALPATE_VIEWER
+        viewer(),
+#endif
+    };
     return all;
 }
 

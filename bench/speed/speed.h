@@ -93,5 +93,6 @@ std::vector<Case> embed_cases();
 Benchmark pipeline();  // the 2012 paper's tables
 Benchmark heart();     // the 2005 paper's figures
 Benchmark touch();     // the 2007 paper's table
+Benchmark viewer();    // only where the viewer was built (PALPATE_VIEWER)
 
 }  // namespace palpate::speed

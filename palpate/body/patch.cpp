@@ -10,13 +10,17 @@
 namespace palpate {
 namespace {
 
-// By the triangle's own ball, which may take in a few too many.
+// By the boxes around both, and then by the triangle's own ball, which may take in a few too many.
 bool comes_near(const Touchable& surface, uvec3 t, vec3 centre, float radius) {
     const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
+    const vec3 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
+    if (!glm::all(glm::lessThanEqual(low, centre + radius)) ||
+        !glm::all(glm::greaterThanEqual(high, centre - radius)))
+        return false;
     const vec3 middle = (a + b + c) / 3.0f;
     const float size =
         std::max({glm::distance(a, middle), glm::distance(b, middle), glm::distance(c, middle)});
-    return glm::distance(middle, centre) <= radius + size;
+    return !(glm::distance(middle, centre) > radius + size);
 }
 
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -40,10 +44,11 @@ Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, dou
         assert(surface.velocities.empty() || surface.velocities.size() == surface.positions.size());
         for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
             const uvec3 triangle = surface.triangles[t];
+            if (!comes_near(surface, triangle, centre, radius)) continue;
             const bool whole = is_finite(surface.positions[triangle.x]) &&
                                is_finite(surface.positions[triangle.y]) &&
                                is_finite(surface.positions[triangle.z]);
-            if (!whole || (std::isfinite(radius) && !comes_near(surface, triangle, centre, radius))) continue;
+            if (!whole) continue;
             const auto first = unsigned(mesh_->positions.size());
             for (int k = 0; k < 3; ++k) {
                 mesh_->positions.push_back(surface.positions[triangle[k]]);

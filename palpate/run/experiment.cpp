@@ -69,8 +69,14 @@ Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& 
 }
 
 Strength strength_for(const Body& body) {
-    const float stiffness = stiffest(body);
-    return {0.5f * stiffness, stiffness / (body.spacing * body.spacing)};
+    float lightest = 0, widest = 0;  // 1/kg, of the heaviest node; m²/kg
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        const float inverse = body.inverse_mass[i];
+        if (inverse > 0 && (lightest == 0 || inverse < lightest)) lightest = inverse;
+        widest = std::max(widest, body.area[i] * inverse);
+    }
+    const float most = 1.5f * stiffest(body) * lightest;  // 1/s², the square of the frequency that a hand may add
+    return {most, widest > 0 ? most / widest : 0};
 }
 
 // ---- what it is made of ----
@@ -86,15 +92,18 @@ struct Experiment::Made {
 
 namespace {
 
-// Room for hands in the step, as if two took hold of the same node.
+// Room for a hand in the step: the bound takes all of its strength to act on the lightest node.
 void expect_hands(Models& models) {
-    Strength strongest;
+    float pull = 0, pressure = 0;
     for (const Model& model : models.models) {
-        const Strength one = strength_for(model.body);
-        strongest = {std::max(strongest.pull, one.pull), std::max(strongest.pressure, one.pressure)};
+        const Strength strength = strength_for(model.body);
+        float most = 0;  // 1/kg, of the lightest
+        for (float inverse : model.body.inverse_mass) most = std::max(most, inverse);
+        if (most > 0) pull = std::max(pull, strength.pull / most);
+        pressure = std::max(pressure, strength.pressure);
     }
-    models.simulation.pull += 2 * strongest.pull;
-    models.simulation.contact += strongest.pressure;
+    models.simulation.pull += pull;
+    models.simulation.contact += pressure;
 }
 
 std::vector<double> stable_steps_of(const Models& models) {

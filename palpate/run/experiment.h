@@ -23,10 +23,10 @@ struct Prepared {
 /// Throws Error.
 Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& progress = {});
 
-/// How strong a hand is that reaches into a body, so that it moves what it takes hold of and the step need
-/// not be much shorter.
+/// How strong a hand is that reaches into a body: as strong as the springs of its heaviest nodes, so that it
+/// moves what it takes hold of, and weaker with light ones, so that the step need not be much shorter.
 struct Strength {
-    float pull = 0;      // N/m, of a drag of one node
+    float pull = 0;      // N/m, of a drag of one node, for each kg of it
     float pressure = 0;  // Pa/m, of a tip
 };
 Strength strength_for(const Body& body);

@@ -126,12 +126,12 @@ TEST(Command, ScenesThatDoNotFit) {
     write_text(
         scratch / "bad.toml",
         "[[body]]\nname = \"a\"\nvolume = \"missing.nii\"\niso = 1\nyoungs_modulus = 1\ndensity = 1\n");
-    expect_one_line(palpate("run " + (scratch / "bad.toml").string()), {"missing.nii", "PALPATE_DATA"});
+    expect_one_line(palpate("run --headless " + (scratch / "bad.toml").string()), {"missing.nii", "PALPATE_DATA"});
     write_text(scratch / "bad.toml", "[[body]]\nname = \"a\"\nnods = 3\n");
-    expect_one_line(palpate("run " + (scratch / "bad.toml").string()),
+    expect_one_line(palpate("run --headless " + (scratch / "bad.toml").string()),
                     {"bad.toml", "line 3", "nods", "nodes"});
     expect_one_line(palpate("run " + (scratch / ".").string()), {"folder"});
-    expect_one_line(palpate("run box --set simulation.step=0.5"), {"verlet", "--force"});
+    expect_one_line(palpate("run box --headless --set simulation.step=0.5"), {"verlet", "--force"});
 }
 
 TEST(Command, DivergenceIsReported) {
