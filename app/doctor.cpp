@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/terminal.h"
+#include "app/view.h"
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/pipe.h"
@@ -151,6 +152,8 @@ Finding look_at_haptics() {
     return finding;
 }
 
+Finding look_at_window() { return {"window", "a display", {}, problem_of(check_view)}; }
+
 Finding look_at_films() {
     if (has_program("ffmpeg")) return {"films", "the program ffmpeg"};
     return {"films", "", {}, "no program ffmpeg for --video; install ffmpeg, or ask for --images"};
@@ -179,6 +182,8 @@ struct Diagnosis {
 
 Diagnosis diagnose() {
     Diagnosis all;
+    // First, because a window's context and one without a window do not suffer each other on one thread.
+    const Finding window = look_at_window();
     std::optional<gl::Context> context;
     Finding opengl{"opengl", "", {}, problem_of([&] { context.emplace(); })};
     if (context) {
@@ -195,6 +200,7 @@ Diagnosis diagnose() {
     for (const auto& backend : names(Backend{})) all.findings.push_back(look_at(backend.value, context));
     all.findings.push_back(look_at_mapping(context));
     all.findings.push_back(look_at_haptics());
+    all.findings.push_back(window);
     all.findings.push_back(look_at_films());
     all.findings.push_back(look_at_data());
     return all;

@@ -2,6 +2,8 @@
 
 #include "app/viewer/window.h"
 
+void check_view() { palpate::check_window(); }
+
 void view(const std::string& file, const std::vector<palpate::Change>& changes, palpate::ivec2 size,
           bool lattice) {
     using namespace palpate;

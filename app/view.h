@@ -5,7 +5,10 @@
 #include <vector>
 
 /// Opens a scene in a window, until it is closed: view.cpp; or where the viewer was not built, no_view.cpp,
-/// which /// throws Error that says so. `file`: a scene's file or name, or a recording. `size`: of the
+/// which throws Error that says so. `file`: a scene's file or name, or a recording. `size`: of the
 /// window; `lattice`: shows the springs.
 void view(const std::string& file, const std::vector<palpate::Change>& changes, palpate::ivec2 size,
           bool lattice);
+
+/// Whether it could: throws the same Error.
+void check_view();

@@ -87,8 +87,9 @@ struct Slid {
     bool moved = false, again = false;
 };
 
+// There is one pointer, and it holds one slider at a time.
 Slid slid(bool moved) {
-    static bool has_moved = false;  // since it was taken hold of; there is one pointer, and it holds one
+    static bool has_moved = false;  // since it was taken hold of
     if (ImGui::IsItemActivated()) has_moved = false;
     const Slid result{moved, moved && has_moved};
     has_moved |= moved;
@@ -99,6 +100,23 @@ Slid slide(const char* label, float& value, float low, float high, const char* f
            bool logarithmic = false) {
     return slid(ImGui::SliderFloat(label, &value, low, high, format,
                                    logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None));
+}
+
+// The same for what takes the solver a while: it counts when it is let go of.
+bool slide_and_let_go(const char* label, float& value, float low, float high, const char* format) {
+    static ImGuiID held = 0;
+    static float at = 0;  // where that is
+    const ImGuiID here = ImGui::GetID(label);
+    if (held == here) value = at;
+    ImGui::SliderFloat(label, &value, low, high, format, ImGuiSliderFlags_Logarithmic);
+    if (ImGui::IsItemActive()) {
+        held = here;
+        at = value;
+    } else if (held == here) {
+        held = 0;
+        return ImGui::IsItemDeactivatedAfterEdit();
+    }
+    return false;
 }
 
 std::string number(double value) { return fmt::format("{:.6g}", value); }
@@ -129,18 +147,20 @@ void show_hand(Viewer& viewer) {
 }
 
 void show_dent_width(Viewer& viewer) {
-    const Experiment& experiment = *viewer.experiment();
-    for (std::size_t b = 0; b < experiment.scene().bodies.size(); ++b) {
-        float width = 1000 * float(experiment.scene().bodies[b].feel.dent_width);
-        ImGui::PushID(int(b));
-        if (const Slid s = slide("dent width", width, 1, 50, "%.1f mm", true); s.moved)
-            viewer.change({fmt::format("body.{}.touch.width={}", b + 1, number(width / 1000))}, s.again);
-        ImGui::PopID();
-    }
+    auto show = [&](const char* kind, std::size_t i, const BodyRecipe recipe) {
+        float width = 1000 * float(recipe.feel.dent_width);
+        if (const Slid s = slide(("dent in " + recipe.name).c_str(), width, 1, 50, "%.1f mm", true); s.moved)
+            viewer.change({fmt::format("{}.{}.touch.width={}", kind, i + 1, number(width / 1000))}, s.again);
+        about("the width of dents in it: their standard deviation");
+    };
+    // Asked for anew each time, since a change makes another scene.
+    auto scene = [&]() -> const Scene& { return viewer.experiment()->scene(); };
+    for (std::size_t i = 0; i < scene().bodies.size(); ++i) show("body", i, scene().bodies[i]);
+    for (std::size_t i = 0; i < scene().surfaces.size(); ++i) show("surface", i, scene().surfaces[i]);
 }
 
 void show_motion(Viewer& viewer) {
-    const Simulation& simulation = viewer.experiment()->models().simulation;
+    const Simulation simulation = viewer.experiment()->models().simulation;  // a change makes another
     Integrator integrator = simulation.integrator;
     if (choose("integrator", integrator))
         viewer.change({fmt::format("simulation.integrator=\"{}\"", name_of(integrator))});
@@ -158,27 +178,26 @@ void show_motion(Viewer& viewer) {
 // The step beside the longest that is stable.
 void show_step(Viewer& viewer) {
     const Experiment& experiment = *viewer.experiment();
-    const Simulation& simulation = experiment.models().simulation;
+    const double step = experiment.models().simulation.step;  // a change makes other models
     double bound = 1;
     for (std::size_t m = 0; m < experiment.models().models.size(); ++m)
         bound = std::min(bound, experiment.stable_step(m));
-    bool automatic = simulation.step == 0;
-    double taken = simulation.step;
+    bool automatic = step == 0;
+    double taken = step;
     for (const Stats& stats : experiment.play().stats())
         if (automatic) taken = std::max(taken, stats.step);
     if (ImGui::Checkbox("automatic step", &automatic))
         viewer.change({automatic ? std::string("simulation.step=\"auto\"")
                                  : "simulation.step=" + number(std::clamp(taken, 1e-5, 0.0166))});
     if (!automatic) {
-        float milliseconds = float(1000 * simulation.step);
+        float milliseconds = float(1000 * step);
         const float high = float(std::min(1.5 * 1000 * bound, 16.6));
-        if (const Slid s = slide("step", milliseconds, 0.02f, std::max(high, 0.05f), "%.3f ms", true);
-            s.moved)
-            viewer.change({"simulation.step=" + number(milliseconds / 1000.0)}, s.again);
+        if (slide_and_let_go("step", milliseconds, 0.02f, std::max(high, 0.05f), "%.3f ms"))
+            viewer.change({"simulation.step=" + number(milliseconds / 1000.0)});
     } else {
         ImGui::Text("step %.3f ms", 1000 * taken);
     }
-    const bool unstable = simulation.step > bound;
+    const bool unstable = step > bound;
     if (unstable)
         ImGui::TextColored(warning, "unstable above %.3f ms", 1000 * bound);
     else
@@ -186,9 +205,9 @@ void show_step(Viewer& viewer) {
 }
 
 void show_body(Viewer& viewer, std::size_t b) {
-    const BodyRecipe& recipe = viewer.experiment()->scene().bodies[b];
-    auto change = [&](const std::string& key, const std::string& value, bool again = false) {
-        viewer.change({fmt::format("body.{}.{}={}", b + 1, key, value)}, again);
+    const BodyRecipe recipe = viewer.experiment()->scene().bodies[b];  // a change makes another scene
+    auto change = [&](const std::string& key, const std::string& value) {
+        viewer.change({fmt::format("body.{}.{}={}", b + 1, key, value)});
     };
     Mapping mapping = recipe.mapping;
     if (choose("mapping", mapping)) change("mapping", fmt::format("\"{}\"", name_of(mapping)));
@@ -197,8 +216,7 @@ void show_body(Viewer& viewer, std::size_t b) {
     auto amount = [&](const char* label, const char* key, float value, const char* format) {
         if (!(value > 0)) return;
         const float middle = std::pow(10.0f, std::round(std::log10(value)));
-        if (const Slid s = slide(label, value, middle / 100, middle * 100, format, true); s.moved)
-            change(key, number(value), s.again);
+        if (slide_and_let_go(label, value, middle / 100, middle * 100, format)) change(key, number(value));
     };
     amount("Young's mod.", "youngs_modulus", material.youngs_modulus, "%.3g Pa");
     amount("stiffness", "stiffness", material.stiffness, "%.3g N/m");
@@ -210,8 +228,7 @@ void show_body(Viewer& viewer, std::size_t b) {
     amount("density", "density", material.density, recipe.is_cloth() ? "%.3g kg/m²" : "%.4g kg/m³");
     amount("mass", "mass", material.mass, "%.3g kg");
     float damping = material.damping;
-    if (const Slid s = slide("damping", damping, 0, 50, "%.2f 1/s", true); s.moved)
-        change("damping", number(damping), s.again);
+    if (slide_and_let_go("damping", damping, 0, 50, "%.2f 1/s")) change("damping", number(damping));
 }
 
 void show_surroundings(Viewer& viewer) {
@@ -227,7 +244,7 @@ void show_surroundings(Viewer& viewer) {
         viewer.change({fmt::format("wind={{velocity=[{},{},{}]}}", wind.x, wind.y, wind.z)}, s.again);
     about("m/s; moves sheets and surfaces");
     for (std::size_t c = 0; c < experiment.scene().colliders.size(); ++c) {
-        const Collider& collider = experiment.scene().colliders[c].collider;
+        const Collider collider = experiment.scene().colliders[c].collider;  // a change makes another scene
         ImGui::PushID(int(c));
         auto change = [&](const std::string& key, const std::string& value, bool again) {
             viewer.change({fmt::format("collider.{}.{}={}", c + 1, key, value)}, again);
@@ -362,12 +379,13 @@ void show_panel(Viewer& viewer, float scale) {
         show_steering(viewer);
         part("hand", true, [&] {
             show_hand(viewer);
-            show_dent_width(viewer);
+            if (viewer.options.mode == Mode::dent) show_dent_width(viewer);
         });
-        part("motion", true, [&] {
-            show_motion(viewer);
-            show_step(viewer);
-        });
+        if (!experiment.scene().bodies.empty())
+            part("motion", true, [&] {
+                show_motion(viewer);
+                show_step(viewer);
+            });
         for (std::size_t b = 0; b < viewer.experiment()->scene().bodies.size(); ++b) {
             ImGui::PushID(int(b));
             const std::string name = "body " + viewer.experiment()->scene().bodies[b].name;
@@ -474,13 +492,13 @@ void show_help_window(const Viewer& viewer, bool& open) {
     ImGui::End();
 }
 
-// A force's arrow from a hand's place, as long as a quarter of the picture at 5 N, and its size in words.
+// A force's arrow from a hand's place, by the root of its size, and that in words.
 void draw_arrow(const Viewer& viewer, const Viewer::Arrow& arrow, float scale) {
     const float newtons = glm::length(arrow.force);
     if (!(newtons > 0)) return;
     const ivec2 size = viewer.view_size();
     const float reach = glm::distance(viewer.camera().eye, viewer.camera().look_at);
-    const float shown = 0.12f * reach * std::sqrt(std::min(newtons, 20.0f));
+    const float shown = 0.06f * reach * std::sqrt(std::min(newtons, 20.0f));
     const auto from = pixel_of(viewer.camera(), arrow.at, size);
     const auto to = pixel_of(viewer.camera(), arrow.at + arrow.force / newtons * shown, size);
     if (!from || !to) return;

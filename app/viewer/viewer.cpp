@@ -237,6 +237,23 @@ ivec2 Viewer::view_size() const {
     return glm::max(halved ? ivec2(size_.x / 2, size_.y) : size_, ivec2(1));
 }
 
+Camera Viewer::camera() const {
+    constexpr float usual = 1.3f;  // times as wide as high, for which scenes choose their angles
+    Camera camera = orbit_.camera();
+    const float aspect = float(view_size().x) / float(view_size().y);
+    if (aspect >= usual) return camera;
+    const float slope =
+        std::tan(0.5f * glm::radians(std::clamp(camera.angle, 1.0f, 170.0f))) * usual / aspect;
+    camera.angle = 2 * glm::degrees(std::atan(slope));
+    return camera;
+}
+
+void Viewer::look_with_mouse() {
+    if (!mouse_) return;
+    looked_ = view_size();
+    mouse_->look(camera(), looked_);
+}
+
 void Viewer::resize(ivec2 size, int left) {
     if (size.x < 1 || size.y < 1) return;  // minimised: nothing is drawn until it has a size again
     size_ = size;
@@ -342,7 +359,7 @@ void Viewer::move_pointer(vec2 pixel) {
     if (drag_ == Drag::turn || drag_ == Drag::pan) {
         drag_ == Drag::turn ? orbit_.turn(by, size_.y) : orbit_.pan(by, size_.y);
         moved_ = now();
-        if (mouse_) mouse_->look(camera(), view_size());
+        look_with_mouse();
         return;
     }
     if (active_) follow_pointer();  // what feels does so once a picture
@@ -379,7 +396,7 @@ void Viewer::wheel(float notches) {
         follow_pointer();
     } else {
         orbit_.zoom(notches);
-        if (mouse_) mouse_->look(camera(), view_size());
+        look_with_mouse();
     }
 }
 
@@ -398,7 +415,7 @@ void Viewer::frame_selection() {
     Bounds box;
     for (vec3 p : selected_) box.include(p);
     orbit_.frame(box.empty() ? box_of(experiment_->play()) : box);
-    if (mouse_) mouse_->look(camera(), view_size());
+    look_with_mouse();
     selected_.clear();
     moved_ = now();
 }
@@ -408,7 +425,8 @@ void Viewer::frame_selection() {
 void Viewer::make_feeling_hand() {
     const bool wanted = experiment_ && options.mode == Mode::dent;
     const bool fits = feeling_ && feeling_device_ == options.device && feeling_tip_ == options.tip &&
-                      feeling_shapes_ == experiment_->shapes();
+                      feeling_shapes_ == experiment_->shapes() &&
+                      feeling_feels_ == feels_of(experiment_->scene());
     if (wanted && fits) return;
     if (!wanted && !feeling_) return;
     feeling_.reset();
@@ -438,7 +456,9 @@ void Viewer::make_feeling_hand() {
     }
     feeling_device_ = options.device;
     feeling_tip_ = options.tip;
+    feeling_feels_ = feels_of(experiment_->scene());
     feeling_shapes_ = experiment_->shapes();
+    looked_ = view_size();
 }
 
 void Viewer::start_denting(const Hit&) {
@@ -452,6 +472,7 @@ void Viewer::start_denting(const Hit&) {
 void Viewer::feel() {
     make_feeling_hand();
     if (!feeling_) return;
+    if (looked_ != view_size()) look_with_mouse();
     feeling_->feel(experiment_->play().skins());
     if (mouse_) follow_pointer();
 }
@@ -575,7 +596,7 @@ void Viewer::draw() {
     if (beside_) other_view_.show({left_ + view_size().x, 0});
     context_.finish();
     // Not the first one of a mesh, which finds out how deep its grooves are.
-    if (shown == shapes_shown_) readings_.draw.add(float(1000 * (now() - start)));
+    if (shown == shapes_shown_ && !options.paused) readings_.draw.add(float(1000 * (now() - start)));
 }
 
 // Stereo shows the left view's renderer twice; the other picture goes beside it at once.

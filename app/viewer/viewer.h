@@ -132,7 +132,8 @@ class Viewer {
 
     // ---- to show ----
 
-    const Camera& camera() const { return orbit_.camera(); }
+    /// Of one of the pictures side by side. Where those are narrow it sees as much across all the same.
+    Camera camera() const;
     struct Message {
         std::string text;
         bool bad = false;
@@ -170,6 +171,7 @@ class Viewer {
     void reach_in();
     void pin_at(const Hit& hit);
     void start_denting(const Hit& hit);
+    void look_with_mouse();
     vec3 follow_pointer();  // where the hand is then
     void make_feeling_hand();
     void feel();
@@ -202,7 +204,9 @@ class Viewer {
     Mouse* mouse_ = nullptr;  // feeling_'s, if that is its device
     DeviceKind feeling_device_ = DeviceKind::mouse;
     float feeling_tip_ = 0;
+    std::vector<Feel> feeling_feels_;
     int feeling_shapes_ = 0;
+    ivec2 looked_ = ivec2(0);  // the size of the picture that mouse_ knows
     bool denting_ = false, touched_ = false;
     float push_ = 0;              // m, how deep the pointer dents
     float notches_ = 0;           // of the mouse's wheel

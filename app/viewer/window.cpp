@@ -35,7 +35,8 @@ struct Glfw {
     ~Glfw() { glfwTerminate(); }
 };
 
-GLFWwindow* make_window(ivec2 size) {
+GLFWwindow* make_window(ivec2 size, bool visible = true) {
+    glfwWindowHint(GLFW_VISIBLE, visible);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -70,6 +71,12 @@ vec2 pixels_a_unit(GLFWwindow* window) {
 }
 
 }  // namespace
+
+void check_window() {
+    const Glfw glfw;
+    make_window(ivec2(64), false);
+    gl::Context::adopt();
+}
 
 struct Window::Parts {
     Glfw glfw;

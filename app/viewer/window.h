@@ -6,6 +6,9 @@
 
 namespace palpate {
 
+/// Throws Error where no window could be opened.
+void check_window();
+
 /// The viewer in a window of the desktop.
 class Window {
  public:

@@ -15,6 +15,8 @@ struct Link {
     ivec3 offset;
     float stiffness;  // N/m, of a whole link
     float rest;       // m
+
+    bool operator==(const Link&) const = default;
 };
 
 /// Springs implied by a grid (2005, section 3.1): a list of links that all nodes share, and for each node how
@@ -35,6 +37,8 @@ struct Stencil {
     int quarters(std::size_t node, std::size_t link) const {
         return in_quarters() ? int(shares[node] >> 3 * link & 7) : int(shares[node] >> link & 1) * 4;
     }
+
+    bool operator==(const Stencil&) const = default;
 };
 
 /// A spring as the node at one of its ends sees it.
@@ -43,6 +47,8 @@ struct Tie {
     float share = 0;      // how much of it there is, 0 to 1
     float stiffness = 0;  // N/m, of a whole one
     float rest = 0;       // m
+
+    bool operator==(const Tie&) const = default;
 };
 
 /// Springs written out: as many ties for each node, some of them empty. For bodies without a grid (the
@@ -55,6 +61,8 @@ struct Table {
     std::span<const Tie> of(std::size_t node) const& {
         return {ties.data() + node * std::size_t(width), std::size_t(width)};
     }
+
+    bool operator==(const Table&) const = default;
 };
 
 /// Nodes and the springs between them. Plain data; the moving state belongs to a Solver.

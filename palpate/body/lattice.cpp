@@ -98,11 +98,13 @@ bool equal_links(const Material& material) {
 }
 
 // Spreads the mass over the nodes: by how many of the eight cells around each are filled, or evenly.
-void weigh(Body& body, const Cells& cells, const Material& material, bool equal, double volume) {
+void weigh(Body& body, const Material& material, bool equal, double volume) {
+    std::vector<int> filled(body.count(), 0);
+    for (const std::array<int, 8>& cell : body.cells)
+        for (int node : cell) ++filled[std::size_t(node)];
     std::vector<double> part(body.count(), 1);
     if (!equal)
-        for (std::size_t i = 0; i < body.count(); ++i)
-            part[i] = std::max(filled_around(cells, body.stencil().at[i]), 1) / 8.0;
+        for (std::size_t i = 0; i < body.count(); ++i) part[i] = std::max(filled[i], 1) / 8.0;
     double parts = 0;
     for (double p : part) parts += p;
     const double total = material.mass > 0 ? material.mass
@@ -137,9 +139,6 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
         body.positions.push_back(origin + spacing * vec3(p));
         springs.at.push_back(p);
     });
-    body.inverse_mass.resize(body.count());
-    weigh(body, cells, material, equal, volume);
-
     const int bits = springs.in_quarters() ? 3 : 1, whole = springs.in_quarters() ? 4 : 1;
     for (ivec3 p : springs.at) {
         std::uint64_t shares = 0;
@@ -154,6 +153,8 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
         std::array<int, 8>& nodes = body.cells.emplace_back();
         for (int k = 0; k < 8; ++k) nodes[k] = grid[c + corner(k)];
     });
+    body.inverse_mass.resize(body.count());
+    weigh(body, material, equal, volume);
     spread_area(body);
     body.cover.assign(body.count(), 0);
     return body;
@@ -279,6 +280,17 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
         spacing *= float(std::cbrt(std::clamp(ratio, 0.05, 20.0)));
     }
     return assemble_at(best);
+}
+
+bool restuff(Body& body, const Material& from, const Material& to, double volume) {
+    if (equal_links(from) != equal_links(to)) return false;
+    Stencil& springs = std::get<Stencil>(body.springs);
+    springs.links = isotropic_links(to, body.spacing);
+    springs.strength.clear();
+    body.damping = to.damping;
+    body.link_damping = to.link_damping;
+    weigh(body, to, equal_links(to), std::abs(volume));
+    return true;
 }
 
 namespace {

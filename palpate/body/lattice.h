@@ -21,6 +21,11 @@ struct LatticeSettings {
 /// its box.
 Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& progress = {});
 
+/// Makes the lattice of a mesh one of another material, as if it had been made of that: no node is held and
+/// no part is harder any more. `volume`: the mesh's, m³. False, and nothing changes, where that would have
+/// other links at the rim (Material::links).
+bool restuff(Body& body, const Material& from, const Material& to, double volume);
+
 /// A plain box of `dims` nodes along each axis, node (0, 0, 0) at the origin. A dimension of one node is a
 /// sheet, two are a thread: there no cell is filled, and the springs are as strong as along the edge of a
 /// solid.

@@ -75,7 +75,8 @@ Strength strength_for(const Body& body) {
         if (inverse > 0 && (lightest == 0 || inverse < lightest)) lightest = inverse;
         widest = std::max(widest, body.area[i] * inverse);
     }
-    const float most = 1.5f * stiffest(body) * lightest;  // 1/s², the square of the frequency that a hand may add
+    const float most =
+        1.5f * stiffest(body) * lightest;  // 1/s², the square of the frequency that a hand may add
     return {most, widest > 0 ? most / widest : 0};
 }
 
@@ -87,7 +88,6 @@ struct Experiment::Made {
     std::unique_ptr<Models> models;
     std::unique_ptr<Report> report;
     std::unique_ptr<Play> play;
-    std::vector<double> stable_steps;
 };
 
 namespace {
@@ -106,12 +106,16 @@ void expect_hands(Models& models) {
     models.simulation.contact += pressure;
 }
 
-std::vector<double> stable_steps_of(const Models& models) {
-    std::vector<double> steps;
-    for (const Model& model : models.models)
-        steps.push_back(longest_step(models.simulation.integrator, highest_frequency(model.body),
-                                     model.body.damping, model.body.link_damping));
-    return steps;
+// Of bodies that are still what they were: it takes the longest to find out.
+std::vector<double> known_frequencies(const Models& models, const Models& before, const Play& play) {
+    std::vector<double> known(models.models.size(), 0);
+    for (std::size_t m = 0; m < known.size(); ++m)
+        for (std::size_t old = 0; old < before.models.size(); ++old) {
+            const Body &a = models.models[m].body, &b = before.models[old].body;
+            if (same_nodes(a, b) && a.inverse_mass == b.inverse_mass && a.springs == b.springs)
+                known[m] = play.frequency(old);
+        }
+    return known;
 }
 
 }  // namespace
@@ -122,13 +126,11 @@ Experiment::Experiment(Prepared prepared, const gl::Context* context)
               .scene = std::make_unique<Scene>(std::move(prepared.scene)),
               .models = std::make_unique<Models>(std::move(prepared.models)),
               .report = std::make_unique<Report>(),
-              .play = nullptr,
-              .stable_steps = {}};
+              .play = nullptr};
     first_changes_ = made.changes;
     made.scene->simulation.force = made.models->simulation.force = true;
     expect_hands(*made.models);
     made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_);
-    made.stable_steps = stable_steps_of(*made.models);
     take(std::move(made));
 }
 
@@ -137,13 +139,12 @@ Experiment::Made Experiment::make(const std::vector<Change>& changes) const {
               .scene = std::make_unique<Scene>(parse_scene(source_, changes)),
               .models = nullptr,
               .report = std::make_unique<Report>(),
-              .play = nullptr,
-              .stable_steps = {}};
+              .play = nullptr};
     made.scene->simulation.force = true;
     made.models = std::make_unique<Models>(rebuild(*made.scene, *scene_, *models_));
     expect_hands(*made.models);
-    made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_);
-    made.stable_steps = stable_steps_of(*made.models);
+    const std::vector<double> known = known_frequencies(*made.models, *models_, *play_);
+    made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_, known);
     return made;
 }
 
@@ -152,7 +153,6 @@ void Experiment::take(Made made) {
     scene_ = std::move(made.scene);
     models_ = std::move(made.models);
     report_ = std::move(made.report);
-    stable_steps_ = std::move(made.stable_steps);
     trouble_.clear();
 }
 
@@ -255,6 +255,11 @@ void Experiment::pin(std::size_t body, const std::vector<int>& nodes, bool fast)
 
 bool Experiment::is_pinned(std::size_t body, int node) const {
     return !(models_->models[body].body.inverse_mass[std::size_t(node)] > 0);
+}
+
+double Experiment::stable_step(std::size_t body) const {
+    const Body& of = models_->models[body].body;
+    return longest_step(models_->simulation.integrator, play_->frequency(body), of.damping, of.link_damping);
 }
 
 // ---- going on ----

@@ -83,7 +83,7 @@ class Experiment {
     Energy energy() const;                                       // of all bodies
 
     /// The longest step that keeps a body's small motions bounded, untouched, s.
-    double stable_step(std::size_t body) const { return stable_steps_[body]; }
+    double stable_step(std::size_t body) const;
 
     /// Goes up whenever a surface, or how it hangs on its nodes, is another.
     int shapes() const { return shapes_; }
@@ -121,7 +121,6 @@ class Experiment {
     std::unique_ptr<Models> models_;
     std::unique_ptr<Report> report_;
     std::unique_ptr<Play> play_;
-    std::vector<double> stable_steps_;  // s, one a body
     std::string trouble_;
     long frame_ = 0;         // since time 0
     std::deque<Good> good_;  // the latest last

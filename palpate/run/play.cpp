@@ -74,7 +74,8 @@ Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double secon
     return motion;
 }
 
-Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context)
+Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context,
+           std::span<const double> frequencies)
     : scene_(scene),
       made_(made),
       report_(report),
@@ -84,7 +85,9 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
     Simulation simulation = made.simulation;
     simulation.frame = frame_seconds;
     for (const Model& model : made.models) {
-        solvers_.push_back(make_solver(model.body, simulation, context));
+        const std::size_t m = solvers_.size();
+        solvers_.push_back(
+            make_solver(model.body, simulation, context, m < frequencies.size() ? frequencies[m] : 0));
         report.bodies.push_back(describe(model));
         for (const ToolRecipe& tool : scene.tools)
             if (tool.kind == ToolKind::press && tool.radius < 0.7f * model.body.spacing)

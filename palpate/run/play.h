@@ -37,8 +37,9 @@ struct Pushes {
 /// goes into the report.
 class Play {
  public:
-    /// On a GPU, in that context.
-    Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context = nullptr);
+    /// On a GPU, in that context. `frequencies`: of the bodies, where they are known; see make_solver.
+    Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context = nullptr,
+         std::span<const double> frequencies = {});
 
     /// Simulates and maps `seconds` from `time` on; what moves on a GPU is mapped when somebody asks for it.
     /// False if a body diverged: then all are as they were before.
@@ -55,6 +56,8 @@ class Play {
     /// Goes on from another play of a scene with the same tools: where its tools touched and what they hold
     /// is theirs no more but this one's. Not the bodies; see restore().
     void take_tools(Play& from);
+
+    double frequency(std::size_t body) const { return solvers_[body]->frequency(); }
 
     /// Bytes that all moving states take.
     std::size_t memory() const;

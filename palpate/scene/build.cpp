@@ -93,6 +93,11 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
     if (!recipe.regions.empty()) strengthen(body, factors);
 }
 
+void hold(Body& body, const BodyRecipe& recipe, const Scene& scene, std::vector<std::string>& notes) {
+    strengthen_regions(body, recipe, scene, notes);
+    pin(body, chosen(body, recipe.pin, down(scene), "body " + recipe.name, "pin.", notes));
+}
+
 // ---- bodies ----
 
 // What the user should know of what came out. `solid`: the volume that was filled, m³.
@@ -218,6 +223,17 @@ BodyRecipe without_body(BodyRecipe recipe) {
     return recipe;
 }
 
+// All but what its nodes are made of, which of them are held, and how the surface hangs on them.
+BodyRecipe without_stuff(BodyRecipe recipe) {
+    const BodyRecipe plain;
+    recipe = without_looks(std::move(recipe));
+    recipe.material = plain.material;
+    recipe.pin = plain.pin;
+    recipe.regions = plain.regions;
+    recipe.mapping = plain.mapping;
+    return recipe;
+}
+
 bool looks_down(const BodyRecipe& recipe) {
     return recipe.pin.below || std::ranges::any_of(recipe.regions, [](const Region& region) {
                return region.choice.below.has_value();
@@ -229,11 +245,15 @@ struct Earlier {
     const Scene& scene;
     const Models& made;
 
-    // Nothing, if no body was made of the same recipe, apart from what `but_for` takes out of it.
-    const Model* model(const BodyRecipe& recipe, BodyRecipe (*but_for)(BodyRecipe)) const {
+    // The number of a body that was made of the same recipe, apart from what `but_for` takes out of it.
+    std::optional<std::size_t> find(const BodyRecipe& recipe, BodyRecipe (*but_for)(BodyRecipe)) const {
         for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-            if (but_for(scene.bodies[i]) == but_for(recipe)) return &made.models[i];
-        return nullptr;
+            if (but_for(scene.bodies[i]) == but_for(recipe)) return i;
+        return std::nullopt;
+    }
+    const Model* model(const BodyRecipe& recipe, BodyRecipe (*but_for)(BodyRecipe)) const {
+        const auto number = find(recipe, but_for);
+        return number ? &made.models[*number] : nullptr;
     }
     const Still* still(const BodyRecipe& recipe) const {
         for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
@@ -258,9 +278,27 @@ CleanSurface surface_of(const BodyRecipe& recipe, const Scene& scene, const Earl
     return made;
 }
 
+// The same nodes of another stuff, held elsewhere, or with a surface that hangs on them in another way;
+// nothing, if that is not all that has changed. Grids without a mesh and cloths are made anew faster than
+// that.
+std::optional<Model> restuffed(const BodyRecipe& recipe, const Scene& scene, const Earlier* earlier,
+                               std::vector<std::string>& notes) {
+    if (recipe.dims || recipe.cage || recipe.is_cloth() || recipe.is_textured() || !earlier)
+        return std::nullopt;
+    const auto number = earlier->find(recipe, without_stuff);
+    if (!number) return std::nullopt;
+    const BodyRecipe& before = earlier->scene.bodies[*number];
+    Model model = earlier->made.models[*number];
+    if (!restuff(model.body, before.material, recipe.material, volume(model.surface))) return std::nullopt;
+    if (recipe.mapping != before.mapping) model.embedding = embed(model.surface, model.body, recipe.mapping);
+    hold(model.body, recipe, scene, notes);
+    return model;
+}
+
 Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* earlier,
                 std::vector<std::string>& notes, const Progress& progress) {
     if (const Model* same = unchanged(wanted, scene, earlier)) return *same;
+    if (auto other = restuffed(wanted, scene, earlier, notes)) return std::move(*other);
     const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
     const bool grid = recipe.dims || recipe.cloth;
     CleanSurface made;
@@ -286,8 +324,7 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* ear
         model.surface = {};  // what has no faces shows nothing
     if (grid) place(model, recipe);
 
-    strengthen_regions(model.body, recipe, scene, notes);
-    pin(model.body, chosen(model.body, recipe.pin, down(scene), "body " + recipe.name, "pin.", notes));
+    hold(model.body, recipe, scene, notes);
     add_notes(recipe, model, solid, notes);
     return model;
 }

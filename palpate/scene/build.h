@@ -44,8 +44,8 @@ struct Models {
 /// Reads the files, makes surfaces, bodies, embeddings and colliders, and pins. Throws Error.
 Models build(const Scene& scene, const Progress& progress = {});
 
-/// The same for a scene that was changed since `made` was built of `before`: what the change does not touch is
-/// taken over, so that no file is read and no surface mended again for another stiffness.
+/// The same for a scene that was changed since `made` was built of `before`: what the change does not touch
+/// is taken over, so that no file is read and no surface mended again for another stiffness.
 Models rebuild(const Scene& scene, const Scene& before, const Models& made, const Progress& progress = {});
 
 }  // namespace palpate

@@ -65,8 +65,8 @@ int steps_within(double seconds, double longest) {
 }
 
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
-                                    const gl::Context* context) {
-    const double frequency = highest_frequency(body);
+                                    const gl::Context* context, double frequency) {
+    if (!(frequency > 0)) frequency = highest_frequency(body);
     if (!std::isfinite(frequency))
         throw Error("masses or springs that are not finite", name_in_errors(body),
                     "give all nodes a mass above zero, and all springs finite stiffness");

@@ -41,6 +41,9 @@ class Solver {
     /// The longest step that step() would take with these, s.
     virtual double longest_step(const Influences& influences = {}) const = 0;
 
+    /// The highest frequency of the body's free motion, rad/s (stability.h).
+    virtual double frequency() const = 0;
+
     /// Puts back what was before the last call of step(); once for each call.
     virtual void undo() = 0;
 
@@ -69,8 +72,9 @@ class Solver {
 /// Throws Error if a step above the stability bound is asked for without `force`, if the integrator has none
 /// without damping, if a frame would take more than 1,000 steps, or if there are more colliders than fit. A
 /// backend of the GPU works in `context`, which has to outlive the solver, or if there is none in one of its
-/// own; it throws Error if there is no OpenGL.
+/// own; it throws Error if there is no OpenGL. `frequency`: the body's highest, if it is known; finding it
+/// takes longer than all the rest.
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
-                                    const gl::Context* context = nullptr);
+                                    const gl::Context* context = nullptr, double frequency = 0);
 
 }  // namespace palpate

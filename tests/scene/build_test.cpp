@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
@@ -313,6 +314,120 @@ TEST(Build, TheStrengthOfToolsIsKnownBeforehand) {
                              "[[tool]]\nkind = \"drag\"\nstiffness = 70\n" + path);
     EXPECT_NEAR(made.simulation.contact, 300 / (3.14159265f * 1e-4f), 1);
     EXPECT_EQ(made.simulation.pull, 70);
+}
+
+// ---- what is made again ----
+
+// Where a surface is when its nodes have moved somehow: the same for embeddings that are the same.
+std::vector<vec3> carried(const Model& model) {
+    std::vector<vec3> places = model.body.positions, arrows(places.size()), positions, normals;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        places[i] += 0.01f * vec3(std::sin(300 * places[i].y), std::sin(200 * places[i].z), 0);
+        arrows[i] = vec3(std::sin(float(i)), 1, std::cos(float(i)));
+    }
+    deform(model.embedding, {places, arrows}, positions, normals);
+    positions.insert(positions.end(), normals.begin(), normals.end());
+    return positions;
+}
+
+void expect_same(const Models& a, const Models& b, const std::string& after) {
+    ASSERT_EQ(a.models.size(), b.models.size());
+    for (std::size_t m = 0; m < a.models.size(); ++m) {
+        const Body &one = a.models[m].body, &other = b.models[m].body;
+        EXPECT_EQ(one.positions, other.positions) << after;
+        EXPECT_EQ(one.inverse_mass, other.inverse_mass) << after;
+        EXPECT_TRUE(one.springs == other.springs) << after;
+        EXPECT_EQ(one.area, other.area) << after;
+        EXPECT_EQ(one.cover, other.cover) << after;
+        EXPECT_EQ(one.damping, other.damping) << after;
+        EXPECT_EQ(one.link_damping, other.link_damping) << after;
+        EXPECT_EQ(a.models[m].surface.positions, b.models[m].surface.positions) << after;
+        EXPECT_EQ(carried(a.models[m]), carried(b.models[m])) << after;
+    }
+    EXPECT_EQ(a.pivots, b.pivots) << after;
+    ASSERT_EQ(a.stills.size(), b.stills.size());
+}
+
+TEST(Rebuild, IsTheSameToTheBitAsBuilding) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(0.05f, 0.03f, 0.04f), 16), scratch / "ball.ply");
+    const std::string text = R"([[body]]
+name = "ball"
+surface = "ball.ply"
+nodes = 700
+youngs_modulus = 5000
+density = 1000
+pin = { below = 0.2 }
+[[body.region]]
+near = [0.03, 0, 0]
+radius = 0.02
+factor = 3
+[[body]]
+name = "box"
+dims = [5, 4, 3]
+spacing = 0.01
+stiffness = 20
+mass = 0.1
+[[surface]]
+name = "still"
+surface = "ball.ply"
+[[move]]
+body = "ball"
+nodes = { near = [0, 0.03, 0] }
+path = [[0, 0, 0, 0], [1, 0, 0.01, 0]]
+)";
+    std::vector<Change> changes;
+    Scene before = parse_scene(text, "test.toml", scratch / ".");
+    Models made = build(before);
+    for (const char* change :
+         {"body.ball.youngs_modulus=9000", "body.ball.density=1100", "body.ball.pin={nodes=[3,4,5]}",
+          "body.ball.pin={below=0.3}", "simulation.gravity=[5,0,0]", "body.ball.mapping=\"frames\"",
+          "body.ball.damping=3", "body.ball.links=\"equal\"", "body.ball.mapping=\"constant\"",
+          "body.ball.links=\"cells\"", "body.ball.nodes=900", "body.ball.colour=[1,0,0]",
+          "body.ball.size=0.08", "body.box.stiffness=30", "body.box.dims=[4,4,4]", "surface.still.size=0.1",
+          "move.1.nodes={near=[0,-0.03,0]}", "simulation.integrator=\"rk4\""}) {
+        changes.push_back(change);
+        const Scene scene = parse_scene(text, "test.toml", scratch / ".", changes);
+        Models again = rebuild(scene, before, made);
+        expect_same(again, build(scene), change);
+        before = scene;
+        made = std::move(again);
+    }
+}
+
+TEST(Rebuild, ReadsNoFileForAnotherStiffness) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(0.05f), 12), scratch / "ball.ply");
+    const std::string text =
+        "[[body]]\nname = \"ball\"\nsurface = \"ball.ply\"\nnodes = 300\nyoungs_modulus = 5000\ndensity = "
+        "1000\n";
+    const Scene before = parse_scene(text, "test.toml", scratch / ".");
+    const Models made = build(before);
+    std::filesystem::remove(scratch / "ball.ply");
+    auto changed = [&](const Change& change) {
+        const Change changes[] = {change};
+        return rebuild(parse_scene(text, "test.toml", scratch / ".", changes), before, made);
+    };
+    for (const char* change :
+         {"body.ball.youngs_modulus=7000", "body.ball.nodes=400", "body.ball.mapping=\"frames\""})
+        EXPECT_NO_THROW(changed(change)) << change;
+    EXPECT_THROW(changed("body.ball.size=0.2"), Error);
+}
+
+TEST(Changed, IsTomlThatReadsAsTheSameScene) {
+    const SceneText scene{cube + "# a word\n[camera]\neye = [1, 2, 3]\n", "test.toml", "."};
+    const std::vector<Change> changes = {"body.cube.damping=4", "body.1.pin={nodes=[1,2]}",
+                                         "simulation.integrator=\"rk4\"", "simulation.gravity=[0.1,0.2,0.3]"};
+    const Scene saved = parse_scene(changed(scene, changes), "test.toml", ".");
+    const Scene said = parse_scene(scene, changes);
+    ASSERT_EQ(saved.bodies.size(), 1u);
+    BodyRecipe one = saved.bodies[0], other = said.bodies[0];
+    one.line = other.line = 0;
+    EXPECT_TRUE(one == other);
+    EXPECT_EQ(saved.camera.eye, said.camera.eye);
+    EXPECT_EQ(saved.simulation.integrator, said.simulation.integrator);
+    EXPECT_EQ(saved.simulation.gravity, said.simulation.gravity);
+    EXPECT_THROW(changed(scene, std::vector<Change>{"nonsense"}), Error);
 }
 
 }  // namespace

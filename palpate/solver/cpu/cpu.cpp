@@ -56,6 +56,8 @@ class Cpu final : public Solver {
         published_ = false;
     }
 
+    double frequency() const override { return frequency_; }
+
     double longest_step(const Influences& influences) const override {
         return step_under(influences, body_, simulation_, frequency_);
     }

@@ -119,6 +119,8 @@ class Gpu final : public Solver {
         go_back(1);
     }
 
+    double frequency() const override { return frequency_; }
+
     double longest_step(const Influences& influences) const override {
         return step_under(influences, body_, simulation_, frequency_);
     }

@@ -125,6 +125,8 @@ class Reference final : public Solver {
         return stats;
     }
 
+    double frequency() const override { return frequency_; }
+
     double longest_step(const Influences& influences) const override {
         return step_under(influences, body_, simulation_, frequency_);
     }
