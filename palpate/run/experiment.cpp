@@ -201,11 +201,13 @@ void Experiment::change(const std::vector<Change>& changes, bool again) {
 }
 
 void Experiment::undo() {
+    if (!can_undo()) return;
     set(history_[at_ - 1]);
     --at_;
 }
 
 void Experiment::redo() {
+    if (!can_redo()) return;
     set(history_[at_ + 1]);
     ++at_;
 }
