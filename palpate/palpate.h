@@ -49,6 +49,8 @@
 #include "palpate/mesh/write.h"
 #include "palpate/render/picture.h"
 #include "palpate/render/renderer.h"
+#include "palpate/run/experiment.h"
+#include "palpate/run/recording.h"
 #include "palpate/run/report.h"
 #include "palpate/run/run.h"
 #include "palpate/scene/build.h"

@@ -135,9 +135,9 @@ void show_hand(Viewer& viewer) {
     if (ImGui::SliderFloat("tip", &millimetres, 1, 1000 * most, "%.1f mm", ImGuiSliderFlags_Logarithmic))
         options.tip = millimetres / 1000;
     about("the radius of what presses, dents and pins");
-    if (options.mode != Mode::dent) return;
+    if (options.mode == Mode::pin) return;
     choose("device", options.device);
-    about("what moves the hand that dents and feels");
+    about("what moves the hand; a mouse is felt only where it dents");
     if (options.device == DeviceKind::mouse) return;
     static char file[512] = "";
     ImGui::InputTextWithHint(options.device == DeviceKind::playback ? "log" : "path",
@@ -523,8 +523,8 @@ void draw_arrow(const Viewer& viewer, const Viewer::Arrow& arrow, float scale) {
 
 // How large the tip is that dents.
 void draw_tip(const Viewer& viewer, float scale) {
-    if (!viewer.feeling()) return;
-    const Camera& camera = viewer.camera();
+    if (!viewer.feeling() || viewer.options.mode != Mode::dent) return;
+    const Camera camera = viewer.camera();
     const vec3 centre = viewer.feeling()->felt().proxy, to = camera.look_at - camera.eye;
     const vec3 aside = viewer.options.tip * glm::normalize(glm::cross(to, camera.up));
     const auto middle = pixel_of(camera, centre, viewer.view_size());

@@ -49,20 +49,24 @@ Hold Hold::pulling(const Experiment& experiment, const Hit& hit) {
     return hold;
 }
 
-Hold Hold::pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius) {
+Hold Hold::tip(const Experiment& experiment, std::size_t number, vec3 place, float radius) {
+    const Body& body = experiment.models().models[number].body;
     Hold hold;
-    const auto& models = experiment.models().models;
-    hold.body_ = std::min(hit.surface, models.size() - 1);
-    const Body& body = models[hold.body_].body;
-    const vec3 before = ray.at(std::max(hit.way - 4 * radius, 0.0f));
-    const float way = way_to_touch(before, ray.along, radius, experiment.play().skins())
-                          .value_or(glm::distance(before, hit.place) - radius);
+    hold.body_ = number;
     hold.nodes_ = body.count();
     hold.radius_ = radius;
     hold.stiffness_ = strength_for(body).pressure * 3.14159265f * radius * radius;
     hold.fastest_ = width_of(body);
-    hold.place_ = before + way * ray.along;
-    hold.target_ = hold.place_ + 0.5f * radius * ray.along;
+    hold.place_ = hold.target_ = place;
+    return hold;
+}
+
+Hold Hold::pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius) {
+    const vec3 before = ray.at(std::max(hit.way - 4 * radius, 0.0f));
+    const float way = way_to_touch(before, ray.along, radius, experiment.play().skins())
+                          .value_or(glm::distance(before, hit.place) - radius);
+    Hold hold = tip(experiment, hit.surface, before + way * ray.along, radius);
+    hold.go_to(hold.place_ + 0.5f * radius * ray.along);
     return hold;
 }
 

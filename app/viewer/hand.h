@@ -36,6 +36,9 @@ class Hold {
     /// A tip that comes along a line of sight, touches what `hit` says and goes in by half its radius.
     static Hold pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius);
 
+    /// A tip somewhere, as strong as suits that body.
+    static Hold tip(const Experiment& experiment, std::size_t body, vec3 place, float radius);
+
     bool presses() const { return threads_.empty(); }
     float radius() const { return radius_; }
     vec3 place() const { return place_; }  // m, of the hand

@@ -141,6 +141,7 @@ void Viewer::begin(Prepared prepared) {
     denting_ = false;
     holds_.clear();
     active_.reset();
+    device_hold_.reset();
     drag_ = Drag::none;
     beside_.reset();
     compared_ = {};
@@ -290,7 +291,7 @@ void Viewer::reach_in() {
     }
     touched_ = true;
     selected_.assign({hit->place - 4 * options.tip, hit->place + 4 * options.tip});
-    if (options.mode == Mode::dent) return start_denting(*hit);
+    if (options.mode == Mode::dent) return start_denting();
     if (hit->surface >= experiment_->models().models.size())
         return say("nothing moves this surface; it can be dented");
     if (replay_) return say("a recording is replayed; press R to begin anew");
@@ -310,7 +311,7 @@ bool Viewer::room_for(const Hold& hold) const {
     std::size_t presses = hold.presses(), pulls = hold.pulls();
     for (const ToolRecipe& tool : experiment_->scene().tools)
         (tool.kind == ToolKind::press ? presses : pulls) += tool.kind != ToolKind::dent;
-    for (const Hold& other : holds_) {
+    for (const Hold& other : holds()) {
         presses += other.presses();
         if (other.body() == hold.body()) pulls += other.pulls();
     }
@@ -423,7 +424,8 @@ void Viewer::frame_selection() {
 // ---- the hand that feels ----
 
 void Viewer::make_feeling_hand() {
-    const bool wanted = experiment_ && options.mode == Mode::dent;
+    const bool by_device = options.device != DeviceKind::mouse && options.mode != Mode::pin;
+    const bool wanted = experiment_ && (options.mode == Mode::dent || by_device);
     const bool fits = feeling_ && feeling_device_ == options.device && feeling_tip_ == options.tip &&
                       feeling_shapes_ == experiment_->shapes() &&
                       feeling_feels_ == feels_of(experiment_->scene());
@@ -449,7 +451,7 @@ void Viewer::make_feeling_hand() {
         feeling_ = std::make_unique<FeelingHand>(std::move(device), feels_of(experiment_->scene()),
                                                  options.tip, start, experiment_->play().skins());
     });
-    if (!feeling_) {
+    if (!feeling_) {  // and it is said why
         mouse_ = nullptr;
         options.mode = Mode::pull;
         options.device = DeviceKind::mouse;
@@ -461,7 +463,36 @@ void Viewer::make_feeling_hand() {
     looked_ = view_size();
 }
 
-void Viewer::start_denting(const Hit&) {
+// A device that is no mouse does what is chosen too: it presses wherever it is, or takes hold of what it
+// touches until its first button is pressed.
+void Viewer::follow_device() {
+    const bool acts = feeling_ && !mouse_ && !experiment_->models().models.empty() &&
+                      (options.mode == Mode::pull || options.mode == Mode::press);
+    const Felt felt = acts ? feeling_->felt() : Felt{};
+    const bool presses = options.mode == Mode::press;
+    const bool lets_go = !acts || (!presses && felt.buttons & 1);
+    if (device_hold_ && (lets_go || device_hold_->presses() != presses || !device_hold_->fits(*experiment_)))
+        device_hold_.reset();
+    if (lets_go || felt.time == 0) return;
+    std::optional<Hold> begun;
+    if (!device_hold_ && presses) {
+        begun = Hold::tip(*experiment_, 0, felt.hand, options.tip);
+    } else if (!device_hold_ && felt.count > felt.lasting) {
+        const auto touched = std::size_t(felt.surfaces[std::size_t(felt.lasting)]);
+        if (touched < experiment_->models().models.size())
+            begun = Hold::pulling(*experiment_, {.surface = touched, .place = felt.hand});
+    }
+    if (begun && room_for(*begun)) device_hold_ = begun;
+    if (device_hold_) device_hold_->go_to(felt.hand);
+}
+
+std::vector<Hold> Viewer::holds() const {
+    std::vector<Hold> all = holds_;
+    if (device_hold_) all.push_back(*device_hold_);
+    return all;
+}
+
+void Viewer::start_denting() {
     if (!mouse_) return;
     denting_ = true;
     push_ = dent_depth * options.tip;
@@ -504,8 +535,10 @@ void Viewer::one_frame() {
                 options.paused = true;
             }
         } else {
+            follow_device();
             Hands hands;
             for (Hold& hold : holds_) hold.add_to(hands);
+            if (device_hold_) device_hold_->add_to(hands);
             experiment_->advance(hands);
             if (beside_) beside_->advance(hands);
         }
@@ -543,12 +576,12 @@ std::vector<Viewer::Arrow> Viewer::arrows() const {
     std::vector<Arrow> arrows;
     if (!experiment_) return arrows;
     std::size_t press = 0, pull = 0;
-    for (const Hold& hold : holds_) {
+    for (const Hold& hold : holds()) {
         const dvec3 force = hold.force(experiment_->play().pushes(), hold.presses() ? press : pull);
         arrows.push_back({hold.place(), vec3(force)});
         (hold.presses() ? press : pull) += hold.presses() ? 1 : hold.pulls();
     }
-    if (feeling_) {
+    if (feeling_ && options.mode == Mode::dent) {
         const Felt felt = feeling_->felt();
         if (glm::length(felt.force) > 0) arrows.push_back({felt.proxy, felt.force});
     }
@@ -557,7 +590,7 @@ std::vector<Viewer::Arrow> Viewer::arrows() const {
 
 Traces Viewer::traces() const {
     Traces traces;
-    for (const Hold& hold : holds_) {
+    for (const Hold& hold : holds()) {
         if (hold.presses()) {
             traces.balls.push_back({hold.place(), hold.radius(), hand_colour});
             continue;
@@ -566,7 +599,7 @@ Traces Viewer::traces() const {
         traces.lines.push_back(uvec2(traces.points.size(), traces.points.size() + 1));
         traces.points.insert(traces.points.end(), {hold.held(experiment_->play()), hold.place()});
     }
-    if (!feeling_) return traces;
+    if (!feeling_ || options.mode != Mode::dent) return traces;
     const Felt felt = feeling_->felt();
     // A small one, or it would hide the dent; the controls draw a ring as large as the tip.
     traces.balls.push_back({felt.proxy, 0.25f * options.tip, proxy_colour});

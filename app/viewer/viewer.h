@@ -60,7 +60,7 @@ struct Options {
     bool paused = false;
     bool stereo = false;  // side by side, for the papers' immersive displays
     Compared compared;
-    DeviceKind device = DeviceKind::mouse;  // of the hand that dents
+    DeviceKind device = DeviceKind::mouse;  // of the hand
     std::string device_file;                // its path, or its log
 };
 
@@ -146,7 +146,8 @@ class Viewer {
         vec3 force = vec3(0);  // N
     };
     std::vector<Arrow> arrows() const;
-    const std::vector<Hold>& holds() const { return holds_; }
+    /// The pointer's own, those that were left, and a device's.
+    std::vector<Hold> holds() const;
     bool is_holding() const { return active_.has_value() || denting_; }
     bool touched() const { return touched_; }  // whether anybody has reached in yet
     const FeelingHand* feeling() const { return feeling_.get(); }
@@ -170,10 +171,11 @@ class Viewer {
     void follow_compared();
     void reach_in();
     void pin_at(const Hit& hit);
-    void start_denting(const Hit& hit);
+    void start_denting();
     void look_with_mouse();
     vec3 follow_pointer();  // where the hand is then
     void make_feeling_hand();
+    void follow_device();
     void feel();
     void one_frame();
     void add_film_frame();
@@ -199,6 +201,7 @@ class Viewer {
     Drag drag_ = Drag::none;
     std::vector<Hold> holds_;
     std::optional<std::size_t> active_;  // of the holds, the pointer's own
+    std::optional<Hold> device_hold_;    // of a device that is no mouse
     float depth_ = 0;                    // m from the eye, of what the pointer holds
     std::unique_ptr<FeelingHand> feeling_;
     Mouse* mouse_ = nullptr;  // feeling_'s, if that is its device

@@ -296,6 +296,31 @@ TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     EXPECT_TRUE(glm::distance(viewer.feeling()->felt().hand, vec3(0.1f, 0.2f, 0.02f)) < 1e-4f);
 }
 
+TEST_F(ViewerTest, ADevicePressesAndPullsAsWell) {
+    open("box", {"simulation.gravity=[0,0,0]"});
+    const Scratch scratch;
+    // It comes down on the beam's upper side, waits, and goes up.
+    write_text(scratch / "path.csv", "0,0.15,0.09,0.025\n0.3,0.15,0.045,0.025\n60,0.15,0.045,0.025\n");
+    viewer.options.device = DeviceKind::script;
+    viewer.options.device_file = (scratch / "path.csv").string();
+    viewer.options.mode = Mode::press;
+    const double before = state().positions[456].y;
+    const double start = now();
+    while (state().positions[456].y > before - 0.001 && now() - start < 20) viewer.advance(1);
+    EXPECT_LT(state().positions[456].y, before - 0.001) << viewer.message().text;
+    ASSERT_EQ(viewer.arrows().size(), 1u);
+    EXPECT_GT(viewer.arrows()[0].force.y, 0);
+    viewer.options.device_file = (scratch / "path.csv").string();
+    viewer.options.mode = Mode::pull;
+    while ((viewer.holds().empty() || viewer.holds()[0].presses()) && now() - start < 40) viewer.advance(1);
+    ASSERT_EQ(viewer.holds().size(), 1u);
+    EXPECT_GT(viewer.holds()[0].pulls(), 0u);
+    viewer.options.device = DeviceKind::mouse;
+    viewer.advance(2);
+    EXPECT_TRUE(viewer.holds().empty());
+    EXPECT_FALSE(viewer.feeling());
+}
+
 // ---- pictures ----
 
 TEST_F(ViewerTest, TheSameSceneSideBySideIsTheSame) {
