@@ -115,10 +115,14 @@ void run_scene(Arguments& arguments) {
         arguments.changes.push_back("simulation.integrator=\"" + arguments.integrator + "\"");
     set_size(arguments.size, arguments.settings);
     if (arguments.rest) set_rest(*arguments.rest, arguments.settings);
+    const bool recorded = arguments.scene.ends_with(".json");
+    if (recorded && (wants_files(arguments) || !arguments.changes.empty()))
+        throw Error("a recording is replayed as it is", arguments.scene,
+                    "leave the other options out, but for --headless and --size");
     if (!arguments.headless && !wants_files(arguments))
         return view(arguments.scene, arguments.changes, {arguments.settings.width, arguments.settings.height},
                     arguments.settings.lattice);
-    if (arguments.scene.ends_with(".json")) return replay(arguments.scene);
+    if (recorded) return replay(arguments.scene);
     Scene scene = read_scene(arguments.scene, arguments.changes);
     scene.simulation.force = arguments.force;
 

@@ -1,6 +1,7 @@
 #include "app/viewer/gui.h"
 
 #include "palpate/base/clock.h"
+#include "palpate/run/run.h"
 #include "palpate/solver/stability.h"
 
 #include <backends/imgui_impl_opengl3.h>
@@ -98,8 +99,9 @@ Slid slid(bool moved) {
 
 Slid slide(const char* label, float& value, float low, float high, const char* format,
            bool logarithmic = false) {
-    return slid(ImGui::SliderFloat(label, &value, low, high, format,
-                                   logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None));
+    return slid(
+        ImGui::SliderFloat(label, &value, low, high, format,
+                           (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp));
 }
 
 // The same for what takes the solver a while: it counts when it is let go of.
@@ -108,7 +110,8 @@ bool slide_and_let_go(const char* label, float& value, float low, float high, co
     static float at = 0;  // where that is
     const ImGuiID here = ImGui::GetID(label);
     if (held == here) value = at;
-    ImGui::SliderFloat(label, &value, low, high, format, ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat(label, &value, low, high, format,
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemActive()) {
         held = here;
         at = value;
@@ -132,7 +135,8 @@ void show_hand(Viewer& viewer) {
     }
     const float most = std::max(0.05f, 2 * options.tip);
     float millimetres = 1000 * options.tip;
-    if (ImGui::SliderFloat("tip", &millimetres, 1, 1000 * most, "%.1f mm", ImGuiSliderFlags_Logarithmic))
+    if (ImGui::SliderFloat("tip", &millimetres, 1, 1000 * most, "%.1f mm",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         options.tip = millimetres / 1000;
     about("the radius of what presses, dents and pins");
     if (options.mode == Mode::pin) return;
@@ -170,8 +174,10 @@ void show_motion(Viewer& viewer) {
     about("where it is computed; the motion goes on from where it is");
     if (backend == Backend::cpu) {
         int threads = simulation.threads;
-        if (ImGui::SliderInt("threads", &threads, 1, 8))
-            viewer.change({fmt::format("simulation.threads={}", threads)}, true);
+        if (const Slid s =
+                slid(ImGui::SliderInt("threads", &threads, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp));
+            s.moved)
+            viewer.change({fmt::format("simulation.threads={}", threads)}, s.again);
     }
 }
 
@@ -183,7 +189,7 @@ void show_step(Viewer& viewer) {
     for (std::size_t m = 0; m < experiment.models().models.size(); ++m)
         bound = std::min(bound, experiment.stable_step(m));
     bool automatic = step == 0;
-    double taken = step;
+    double taken = automatic ? frame_seconds / experiment.play().steps_per_frame() : step;
     for (const Stats& stats : experiment.play().stats())
         if (automatic) taken = std::max(taken, stats.step);
     if (ImGui::Checkbox("automatic step", &automatic))
@@ -238,10 +244,14 @@ void show_surroundings(Viewer& viewer) {
         viewer.change({fmt::format("simulation.gravity=[{},{},{}]", gravity.x, gravity.y, gravity.z)},
                       s.again);
     about("m/s²");
+    constexpr float usual_air = 1.2f;  // kg/m³
+    const float air = experiment.scene().simulation.air;
     vec3 wind =
         experiment.scene().wind.empty() ? vec3(0) : position(experiment.scene().wind, experiment.time());
     if (const Slid s = slid(ImGui::SliderFloat3("wind", &wind.x, -15, 15, "%.1f")); s.moved)
-        viewer.change({fmt::format("wind={{velocity=[{},{},{}]}}", wind.x, wind.y, wind.z)}, s.again);
+        viewer.change({fmt::format("wind={{velocity=[{},{},{}]}}", wind.x, wind.y, wind.z),
+                       "simulation.air=" + number(air > 0 ? air : usual_air)},
+                      s.again);
     about("m/s; moves sheets and surfaces");
     for (std::size_t c = 0; c < experiment.scene().colliders.size(); ++c) {
         const Collider collider = experiment.scene().colliders[c].collider;  // a change makes another scene
@@ -312,7 +322,11 @@ void show_readings(const Viewer& viewer) {
     const float sum = readings.simulate.mean() + readings.map.mean() + readings.draw.mean();
     ImGui::Text("%.0f pictures a second, %.2f of real time", ImGui::GetIO().Framerate, readings.pace.mean());
     about(fmt::format("the three together: {:.1f} ms", sum).c_str());
-    ImGui::Text("energy %.3g J moving, %.3g J in springs", readings.energy.kinetic, readings.energy.elastic);
+    if (readings.energy)
+        ImGui::Text("energy %.3g J moving, %.3g J in springs", readings.energy->kinetic,
+                    readings.energy->elastic);
+    else
+        ImGui::TextColored(quiet, "energy: on the GPU");
     ImGui::Text("largest speed %.3g m/s", readings.largest_speed);
     ImGui::Text("state %.1f MB", double(readings.memory) / 1e6);
     if (const FeelingHand* hand = viewer.feeling()) {
@@ -452,8 +466,7 @@ void show_message(const Viewer& viewer, float scale) {
     const Viewer::Message& message = viewer.message();
     const double age = now() - message.since;
     if (message.text.empty() || age > (message.bad ? 20 : 6)) return;
-    ImGui::SetNextWindowPos({0.5f * float(viewer.size().x), float(viewer.size().y) - 12 * scale}, 0,
-                            {0.5f, 1});
+    over_picture(viewer, float(viewer.size().y) - 12 * scale, 1);
     ImGui::Begin("message", nullptr, bare | ImGuiWindowFlags_NoInputs);
     ImGui::PushTextWrapPos(0.7f * float(viewer.size().x));
     if (message.bad)

@@ -38,6 +38,8 @@ vec3 turned(vec3 v, vec3 axis, float angle) {
 
 }  // namespace
 
+vec3 forward_of(const Camera& camera) { return Axes(camera).forward; }
+
 Ray ray_through(const Camera& camera, vec2 pixel, ivec2 size) {
     const Axes axes(camera);
     const vec2 half = 0.5f * vec2(glm::max(size, ivec2(1)));

@@ -15,6 +15,9 @@ struct Ray {
     vec3 at(float way) const { return from + way * along; }
 };
 
+/// In which a camera looks, unit.
+vec3 forward_of(const Camera& camera);
+
 /// Through a place in the picture, in pixels to the right and down from its upper left corner.
 Ray ray_through(const Camera& camera, vec2 pixel, ivec2 size);
 

@@ -24,15 +24,18 @@ void View::resize(ivec2 size) {
     renderer_.resize({size.x, size.y});
 }
 
-void View::set(const Quality& quality) { renderer_.set(quality); }
+void View::set(const Quality& quality) {
+    if (quality == quality_) return;
+    quality_ = quality;
+    renderer_.set(quality);
+}
 
 void View::draw(const Experiment& experiment, const Camera& camera, const Look3d& look,
                 const Traces& traces) {
-    if (&experiment != of_ || experiment.shapes() != shapes_) {
+    if (experiment.shapes() != shapes_) {
         renderer_.clear();
         scenery_.emplace(experiment.scene(), experiment.models(), renderer_, Scenery::Mapped::either);
         edges_.clear();
-        of_ = &experiment;
         shapes_ = experiment.shapes();
     }
     scenery_->now_of(experiment.scene(), experiment.models());

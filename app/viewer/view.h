@@ -16,6 +16,8 @@ struct Look3d {
     bool normals = false;    // as colours (2005, figure 6)
     bool normal_maps = true;
     bool culling = true;
+
+    bool operator==(const Look3d&) const = default;
 };
 
 /// What hands add to a picture: their tips, lines from what they hold, and dents.
@@ -47,8 +49,8 @@ class View {
     Renderer renderer_;
     ivec2 size_;
     std::optional<Scenery> scenery_;
-    const Experiment* of_ = nullptr;
-    int shapes_ = -1;
+    Quality quality_;
+    int shapes_ = -1;                        // what is shown: see Experiment::shapes
     std::vector<std::vector<uvec2>> edges_;  // of the surfaces, once somebody wants to see them
     std::vector<std::vector<Dent>> dents_;
 };

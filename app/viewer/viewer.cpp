@@ -11,12 +11,12 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 namespace palpate {
 namespace {
 
 constexpr double calm = 0.4;            // s without motion, after which a picture is drawn in full
-constexpr std::size_t most_holds = 8;   // of each kind on a body, see Influences
 constexpr long frames_per_picture = 2;  // of a film: 30 pictures a second
 constexpr float away = 0.02f;           // m: so far before a surface a hand waits that does not dent it
 constexpr float dent_depth = 0.6f;      // in radii of its tip
@@ -27,6 +27,10 @@ Bounds box_of(const Play& play) {
     for (const Skin& skin : play.skins())
         for (vec3 p : skin.positions) box.include(p);
     return box;
+}
+
+Change all_cores() {
+    return fmt::format("simulation.threads={}", std::clamp(std::thread::hardware_concurrency(), 1u, 8u));
 }
 
 std::vector<Change> changes_for(const Compared& compared, const Scene& scene) {
@@ -78,30 +82,53 @@ Viewer::Viewer(const gl::Context& context, ivec2 size)
       view_(context, size_),
       other_view_(context, ivec2(16)) {}
 
-Viewer::~Viewer() = default;
+Viewer::~Viewer() {
+    attempt([&] { finish_film(); });
+}
 
 void Viewer::say(const std::string& text, bool bad) { message_ = {text, bad, now()}; }
 
-// What a person asks for may fail, and the window goes on.
-void Viewer::attempt(const std::function<void()>& what) noexcept {
+// What a person asks for may fail, and the window goes on. False if it did.
+bool Viewer::attempt(const std::function<void()>& what) noexcept {
     try {
         what();
+        return true;
     } catch (const std::bad_alloc&) {
         say("not enough memory in this machine; use fewer nodes or faces", true);
     } catch (const std::exception& error) {
         say(error.what(), true);
     }
+    return false;
+}
+
+// A change of what moves; the scene beside it goes on from there. Not in a recording that is replayed.
+void Viewer::alter(const std::function<void()>& how, const std::string& said) {
+    if (!experiment_) return;
+    if (replay_) return say("a recording is replayed; press R to begin anew");
+    const bool done = attempt([&] {
+        how();
+        compared_ = {};
+        moved_ = now();
+    });
+    if (done && !said.empty()) say(said);
+}
+
+void Viewer::let_go() {
+    holds_.clear();
+    active_.reset();
+    device_hold_.reset();
+    drag_ = Drag::none;
+    denting_ = false;
 }
 
 // ---- what is open ----
 
 // On all cores unless told otherwise: the motion is the same, and drawing waits for it.
 void Viewer::open(SceneText source, std::vector<Change> changes) {
-    replay_.reset();
-    const unsigned cores = std::clamp(std::thread::hardware_concurrency(), 1u, 8u);
+    coming_.reset();
     const bool told = std::ranges::any_of(
         changes, [](const Change& change) { return change.starts_with("simulation.threads="); });
-    if (!told) changes.push_back(fmt::format("simulation.threads={}", cores));
+    if (!told) changes.push_back(all_cores());
     import_ = std::make_unique<Import>(std::move(source), std::move(changes));
 }
 
@@ -116,7 +143,7 @@ void Viewer::open_file(const std::filesystem::path& file) noexcept {
 
 void Viewer::replay(Recording recording) {
     import_ = std::make_unique<Import>(recording.scene, recording.changes);
-    replay_ = std::move(recording);
+    coming_ = std::move(recording);
 }
 
 void Viewer::cancel_import() {
@@ -128,23 +155,18 @@ void Viewer::cancel_import() {
 void Viewer::take_import() {
     if (!import_ || !import_->done()) return;
     const std::unique_ptr<Import> done = std::move(import_);
-    const bool was_cancelled = done->cancelled();
+    if (done->cancelled()) return say("stopped opening " + done->name());
     attempt([&] { begin(done->take()); });
-    if (was_cancelled) say("stopped opening " + done->name());
-    if (message_.bad) replay_.reset();
 }
 
 void Viewer::begin(Prepared prepared) {
     auto experiment = std::make_unique<Experiment>(std::move(prepared), &context_);
     feeling_.reset();
     mouse_ = nullptr;
-    denting_ = false;
-    holds_.clear();
-    active_.reset();
-    device_hold_.reset();
-    drag_ = Drag::none;
+    let_go();
     beside_.reset();
     compared_ = {};
+    replay_ = std::exchange(coming_, std::nullopt);
     experiment_ = std::move(experiment);
     frames_ = 0;
     shapes_shown_ = -1;
@@ -165,8 +187,10 @@ void Viewer::begin(Prepared prepared) {
 // ---- the scene beside it ----
 
 void Viewer::follow_compared() {
+    if (replay_) options.compared = {};
     if (options.compared == compared_ || !experiment_) return;
     compared_ = options.compared;
+    moved_ = now();
     beside_.reset();
     attempt([&] {
         const std::vector<Change> changes = changes_for(compared_, experiment_->scene());
@@ -178,52 +202,27 @@ void Viewer::follow_compared() {
 // ---- changes ----
 
 void Viewer::change(const std::vector<Change>& changes, bool again) {
-    if (!experiment_) return;
-    attempt([&] {
-        experiment_->change(changes, again);
-        compared_ = {};  // the other goes on from here
-    });
+    alter([&] { experiment_->change(changes, again); });
 }
 
 void Viewer::undo() {
-    if (!experiment_ || !experiment_->can_undo()) return;
-    attempt([&] {
-        experiment_->undo();
-        compared_ = {};
-        say("undone");
-    });
+    if (experiment_ && experiment_->can_undo()) alter([&] { experiment_->undo(); }, "undone");
 }
 
 void Viewer::redo() {
-    if (!experiment_ || !experiment_->can_redo()) return;
-    attempt([&] {
-        experiment_->redo();
-        compared_ = {};
-        say("done again");
-    });
+    if (experiment_ && experiment_->can_redo()) alter([&] { experiment_->redo(); }, "done again");
 }
 
 void Viewer::restart() {
-    if (!experiment_) return;
     replay_.reset();
-    holds_.clear();
-    active_.reset();
-    attempt([&] {
-        experiment_->restart();
-        compared_ = {};
-        say("from the beginning");
-    });
+    let_go();
+    alter([&] { experiment_->restart(); }, "from the beginning");
 }
 
 void Viewer::return_to_good() {
-    if (!experiment_) return;
-    holds_.clear();
-    active_.reset();
-    attempt([&] {
-        experiment_->return_to_good();
-        compared_ = {};
-        say("as it was a moment ago");
-    });
+    if (!experiment_ || !experiment_->can_return()) return;
+    if (!replay_) let_go();
+    alter([&] { experiment_->return_to_good(); }, "as it was a moment ago");
 }
 
 void Viewer::step_once() {
@@ -273,6 +272,8 @@ vec2 in_view(vec2 pixel, ivec2 view, ivec2 whole) {
 
 void Viewer::press(Button button, bool shift, bool alt) {
     if (!experiment_ || drag_ != Drag::none) return;
+    drag_button_ = button;
+    moved_ = now();
     if (button == Button::middle || (button == Button::right && shift)) {
         drag_ = Drag::pan;
     } else if (button == Button::right || alt) {
@@ -296,26 +297,23 @@ void Viewer::reach_in() {
         return say("nothing moves this surface; it can be dented");
     if (replay_) return say("a recording is replayed; press R to begin anew");
     if (options.mode == Mode::pin) return pin_at(*hit);
-    const Hold hold = options.mode == Mode::pull ? Hold::pulling(*experiment_, *hit)
-                                                 : Hold::pressing(*experiment_, *hit, ray, options.tip);
+    Hold hold = options.mode == Mode::pull ? Hold::pulling(*experiment_, *hit)
+                                           : Hold::pressing(*experiment_, *hit, ray, options.tip);
     if (!room_for(hold))
         return say("no more hands fit on this body; press K to let go of those you left", true);
     holds_.push_back(hold);
     active_ = holds_.size() - 1;
     drag_ = Drag::hold;
-    depth_ = glm::dot(hold.target() - camera().eye, glm::normalize(camera().look_at - camera().eye));
+    depth_ = glm::dot(hold.target() - camera().eye, forward_of(camera()));
 }
 
-// A body takes so many presses and drags at most, those of the scene's tools included.
+// Beside all others.
 bool Viewer::room_for(const Hold& hold) const {
-    std::size_t presses = hold.presses(), pulls = hold.pulls();
-    for (const ToolRecipe& tool : experiment_->scene().tools)
-        (tool.kind == ToolKind::press ? presses : pulls) += tool.kind != ToolKind::dent;
-    for (const Hold& other : holds()) {
-        presses += other.presses();
-        if (other.body() == hold.body()) pulls += other.pulls();
-    }
-    return presses <= most_holds && pulls <= most_holds;
+    std::vector<Hold> all = holds();
+    all.push_back(hold);
+    Hands hands;
+    for (Hold& one : all) one.add_to(hands);
+    return experiment_->takes(hands);
 }
 
 void Viewer::pin_at(const Hit& hit) {
@@ -332,24 +330,24 @@ void Viewer::pin_at(const Hit& hit) {
     for (std::size_t i = 0; i < body.count(); ++i)
         if (int(i) == nearest || glm::distance(positions[i], positions[std::size_t(nearest)]) <= reach)
             nodes.push_back(int(i));
-    experiment_->pin(hit.surface, nodes, fast);
-    compared_ = {};
-    say(fmt::format("{} {} node{}", fast ? "pinned" : "let go of", nodes.size(),
-                    nodes.size() > 1 ? "s" : ""));
+    alter([&] { experiment_->pin(hit.surface, nodes, fast); },
+          fmt::format("{} {} node{}", fast ? "pinned" : "let go of", nodes.size(),
+                      nodes.size() > 1 ? "s" : ""));
 }
 
 void Viewer::release(Button button) {
-    const bool held = drag_ == Drag::hold && button == Button::left;
-    if (held && active_) {
+    if (button != drag_button_) return;
+    moved_ = now();
+    if (drag_ == Drag::hold && active_) {
         holds_.erase(holds_.begin() + std::ptrdiff_t(*active_));
         active_.reset();
     }
-    if (button == Button::left && denting_) {
+    if (denting_) {
         denting_ = false;
         push_ = 0;
         follow_pointer();
     }
-    if (drag_ != Drag::hold || held) drag_ = Drag::none;
+    drag_ = Drag::none;
 }
 
 void Viewer::move_pointer(vec2 pixel) {
@@ -363,14 +361,16 @@ void Viewer::move_pointer(vec2 pixel) {
         look_with_mouse();
         return;
     }
-    if (active_) follow_pointer();  // what feels does so once a picture
+    if (!active_) return;  // what feels follows once a picture
+    moved_ = now();
+    follow_pointer();
 }
 
 // What it holds goes along, as deep in the picture as it is.
 vec3 Viewer::follow_pointer() {
     const vec2 pixel = in_view(pointer_, view_size(), size_);
     const Ray ray = ray_through(camera(), pixel, view_size());
-    const vec3 forward = glm::normalize(camera().look_at - camera().eye);
+    const vec3 forward = forward_of(camera());
     if (active_) {
         const float start = glm::dot(ray.from - camera().eye, forward);
         holds_[*active_].go_to(ray.at((depth_ - start) / glm::dot(ray.along, forward)));
@@ -402,12 +402,14 @@ void Viewer::wheel(float notches) {
 }
 
 void Viewer::keep() {
+    if (denting_) return;
+    moved_ = now();
     if (active_) {
         active_.reset();
         drag_ = Drag::none;
         say("it stays there; K again lets go");
     } else {
-        holds_.clear();
+        let_go();
     }
 }
 
@@ -421,13 +423,22 @@ void Viewer::frame_selection() {
     moved_ = now();
 }
 
+void Viewer::reset_camera() {
+    orbit_.reset();
+    look_with_mouse();
+    moved_ = now();
+}
+
 // ---- the hand that feels ----
 
 void Viewer::make_feeling_hand() {
-    const bool by_device = options.device != DeviceKind::mouse && options.mode != Mode::pin;
-    const bool wanted = experiment_ && (options.mode == Mode::dent || by_device);
-    const bool fits = feeling_ && feeling_device_ == options.device && feeling_tip_ == options.tip &&
-                      feeling_shapes_ == experiment_->shapes() &&
+    // Whatever is no mouse needs a file, and waits for it to be named.
+    const bool by_mouse = options.device == DeviceKind::mouse && options.mode == Mode::dent;
+    const bool by_device =
+        options.device != DeviceKind::mouse && options.mode != Mode::pin && !options.device_file.empty();
+    const bool wanted = experiment_ && (by_mouse || by_device);
+    const bool fits = feeling_ && feeling_device_ == options.device && feeling_file_ == options.device_file &&
+                      feeling_tip_ == options.tip && feeling_shapes_ == experiment_->shapes() &&
                       feeling_feels_ == feels_of(experiment_->scene());
     if (wanted && fits) return;
     if (!wanted && !feeling_) return;
@@ -437,11 +448,8 @@ void Viewer::make_feeling_hand() {
     attempt([&] {
         DeviceSettings settings{.path = {}, .mouse = {.camera = camera(), .size = view_size()}, .log = {}};
         if (options.device == DeviceKind::playback) settings.log = options.device_file;
-        if (options.device == DeviceKind::hand || options.device == DeviceKind::script) {
-            if (options.device_file.empty())
-                throw Error("no path for the hand", "the viewer", "name a file of rows t, x, y, z");
+        if (options.device == DeviceKind::hand || options.device == DeviceKind::script)
             settings.path = read_path(options.device_file);
-        }
         auto device = make_device(options.device, settings);
         vec3 start = settings.path.empty() ? camera().look_at : settings.path.front().position;
         if (options.device == DeviceKind::mouse) {
@@ -453,10 +461,11 @@ void Viewer::make_feeling_hand() {
     });
     if (!feeling_) {  // and it is said why
         mouse_ = nullptr;
-        options.mode = Mode::pull;
-        options.device = DeviceKind::mouse;
+        options.device_file.clear();
+        if (by_mouse) options.mode = Mode::pull;
     }
     feeling_device_ = options.device;
+    feeling_file_ = options.device_file;
     feeling_tip_ = options.tip;
     feeling_feels_ = feels_of(experiment_->scene());
     feeling_shapes_ = experiment_->shapes();
@@ -466,7 +475,8 @@ void Viewer::make_feeling_hand() {
 // A device that is no mouse does what is chosen too: it presses wherever it is, or takes hold of what it
 // touches until its first button is pressed.
 void Viewer::follow_device() {
-    const bool acts = feeling_ && !mouse_ && !experiment_->models().models.empty() &&
+    const bool acts = feeling_ && options.device != DeviceKind::mouse &&
+                      !experiment_->models().models.empty() &&
                       (options.mode == Mode::pull || options.mode == Mode::press);
     const Felt felt = acts ? feeling_->felt() : Felt{};
     const bool presses = options.mode == Mode::press;
@@ -516,7 +526,8 @@ void Viewer::advance(int frames) {
     std::erase_if(holds_, [&](const Hold& hold) { return !hold.fits(*experiment_); });
     if (active_ && *active_ >= holds_.size()) active_.reset(), drag_ = Drag::none;
     follow_compared();
-    for (int f = 0; f < frames && !options.paused && experiment_->trouble().empty(); ++f) one_frame();
+    for (int f = 0; f < frames && !options.paused && (replay_ || experiment_->trouble().empty()); ++f)
+        one_frame();
     attempt([&] { feel(); });
     const double time = now();
     if (measured_ > 0) measure(time - measured_);
@@ -524,30 +535,38 @@ void Viewer::advance(int frames) {
 }
 
 void Viewer::one_frame() {
-    attempt([&] {
-        if (replay_) {
-            if (!experiment_->replay(*replay_)) {
-                const bool same = experiment_->fingerprint() == replay_->fingerprint;
-                say(same ? "replayed to the end, the same to the bit"
-                         : "replayed to the end, but the state is another: another backend or machine?",
-                    !same);
-                replay_.reset();
-                options.paused = true;
-            }
-        } else {
-            follow_device();
-            Hands hands;
-            for (Hold& hold : holds_) hold.add_to(hands);
-            if (device_hold_) device_hold_->add_to(hands);
-            experiment_->advance(hands);
-            if (beside_) beside_->advance(hands);
-        }
-        if (!experiment_->trouble().empty())
-            say(experiment_->trouble() + "; it is held where it was last sound", true);
-    });
+    const bool done = attempt([&] { replay_ ? replay_frame() : live_frame(); });
+    if (!done) {  // it would fail again
+        replay_.reset();
+        options.paused = true;
+    }
     moved_ = now();
     ++frames_;
     if (film_ && frames_ % frames_per_picture == 0) add_film_frame();
+}
+
+void Viewer::replay_frame() {
+    if (experiment_->replay(*replay_)) return;
+    const bool same = experiment_->fingerprint() == replay_->fingerprint;
+    say(same ? "replayed to the end, the same to the bit"
+             : "replayed to the end, but the state is another: another backend, other files, or another "
+               "version?",
+        !same);
+    replay_.reset();
+    options.paused = true;
+}
+
+void Viewer::live_frame() {
+    follow_device();
+    Hands hands;
+    for (Hold& hold : holds_) hold.add_to(hands);
+    if (device_hold_) device_hold_->add_to(hands);
+    experiment_->advance(hands);
+    if (!experiment_->trouble().empty())
+        say(experiment_->trouble() + "; it is held where it was last sound", true);
+    if (!beside_ || !beside_->trouble().empty()) return;
+    beside_->advance(hands);
+    if (!beside_->trouble().empty()) say("on the right, " + beside_->trouble(), true);
 }
 
 void Viewer::measure(double seconds) {
@@ -567,6 +586,7 @@ void Viewer::measure(double seconds) {
         readings_.largest_speed = std::max(readings_.largest_speed, stats.largest_speed);
     if (frames_ % 15 != 0) return;
     readings_.memory = experiment_->play().memory();
+    readings_.energy.reset();  // from a GPU the nodes would have to be read
     if (!on_gpu(experiment_->models().simulation.backend)) readings_.energy = experiment_->energy();
 }
 
@@ -619,12 +639,24 @@ Quality Viewer::quality() {
     return options.care == Care::draft || hurry ? draft_quality : Quality{};
 }
 
+// Whether the last picture is still right: nothing moves, and it is to look the same.
+bool Viewer::is_drawn() const {
+    return options.paused && drawn_ > moved_ && !feeling_ && !options.stereo && !film_ &&
+           drawn_look_ == options.look && drawn_size_ == view_size() && drawn_quality_ == quality_;
+}
+
 void Viewer::draw() {
     if (!experiment_) return;
     const double start = now();
     const int shown = shapes_shown_;
     quality_ = quality();
-    draw_views();
+    if (!is_drawn()) {
+        draw_views();
+        drawn_ = start;
+        drawn_look_ = options.look;
+        drawn_size_ = view_size();
+        drawn_quality_ = quality_;
+    }
     view_.show({left_, 0});
     if (beside_) other_view_.show({left_ + view_size().x, 0});
     context_.finish();
@@ -653,6 +685,7 @@ void Viewer::draw_views() {
 
 Image Viewer::image() {
     quality_ = {};
+    drawn_ = 0;  // what the views hold then is not what the window shows
     if (!experiment_) return {};
     draw_views();
     Image left = view_.image();
@@ -664,24 +697,23 @@ Image Viewer::image() {
 
 // ---- files ----
 
-std::filesystem::path Viewer::free_name(const std::string& ending) const {
+std::filesystem::path Viewer::free_name(const std::filesystem::path& in, const std::string& ending) const {
     const std::string stem = std::filesystem::path(experiment_->source().name).stem().string();
     std::error_code error;
     for (int number = 1;; ++number) {
-        const std::filesystem::path name = folder / fmt::format("{}-{}{}", stem, number, ending);
+        const std::filesystem::path name = in / fmt::format("{}-{}{}", stem, number, ending);
         if (!std::filesystem::exists(name, error)) return name;
     }
 }
 
+// Beside the scene itself, from where the files that it names are found.
 void Viewer::save_scene() {
     if (!experiment_) return;
     attempt([&] {
-        // Where the files that it names are found from.
-        const std::filesystem::path was = folder;
-        folder = experiment_->source().folder;
-        const std::filesystem::path name = free_name(".toml");
-        folder = was;
-        write_text(name, changed(experiment_->source(), experiment_->changes()));
+        const std::filesystem::path name = free_name(experiment_->source().folder, ".toml");
+        std::vector<Change> changes = experiment_->changes();
+        std::erase(changes, all_cores());  // this machine's, not the scene's
+        write_text(name, changed(experiment_->source(), changes));
         say("saved the scene as " + name.lexically_normal().string());
     });
 }
@@ -689,7 +721,7 @@ void Viewer::save_scene() {
 void Viewer::save_picture() {
     if (!experiment_) return;
     attempt([&] {
-        const std::filesystem::path name = free_name(".png");
+        const std::filesystem::path name = free_name(folder, ".png");
         write_png(image(), name);
         say("saved a picture as " + name.string());
     });
@@ -701,7 +733,7 @@ void Viewer::save_surface() {
         const std::vector<Skin>& skins = experiment_->play().skins();
         std::string names;
         for (const Skin& skin : skins) {
-            const std::filesystem::path name = free_name(".ply");
+            const std::filesystem::path name = free_name(folder, ".ply");
             write_mesh({skin.positions, skin.normals, *skin.triangles}, name);
             names += (names.empty() ? "" : ", ") + name.string();
         }
@@ -712,7 +744,7 @@ void Viewer::save_surface() {
 void Viewer::save_recording() {
     if (!experiment_) return;
     attempt([&] {
-        const std::filesystem::path name = free_name(".json");
+        const std::filesystem::path name = free_name(folder, ".json");
         write_recording(experiment_->recording(), name);
         say("saved all inputs since the beginning as " + name.string() + "; drop it here to replay it");
     });
@@ -721,31 +753,34 @@ void Viewer::save_recording() {
 void Viewer::start_or_stop_film() {
     if (!experiment_) return;
     attempt([&] {
-        if (film_) {
-            const std::unique_ptr<Film> film = std::move(film_);
-            film->finish();
-            return say("saved the film as " + film_name_.string());
-        }
-        film_size_ = size_;
-        film_name_ = free_name(".mp4");
+        if (film_) return finish_film();
+        const std::filesystem::path name = free_name(folder, ".mp4");
         const Image first = image();
-        film_ = std::make_unique<Film>(film_name_, first.width, first.height, 60 / int(frames_per_picture));
-        film_->add(first);
+        auto film = std::make_unique<Film>(name, first.width, first.height, 60 / int(frames_per_picture));
+        film->add(first);
+        film_ = std::move(film);
+        film_name_ = name;
+        film_size_ = {first.width, first.height};
         say("filming; V again ends it");
     });
 }
 
+void Viewer::finish_film() {
+    if (!film_) return;
+    const std::unique_ptr<Film> film = std::move(film_);
+    film->finish();
+    say("saved the film as " + film_name_.string());
+}
+
 void Viewer::add_film_frame() {
-    attempt([&] {
-        if (size_ != film_size_) {
-            say("the film ended because the window has another size now", true);
-            const std::unique_ptr<Film> film = std::move(film_);
-            film->finish();
-            return;
-        }
-        film_->add(image());
+    const bool done = attempt([&] {
+        const Image next = image();
+        if (ivec2(next.width, next.height) == film_size_) return film_->add(next);
+        finish_film();
+        say("the film ended where the picture got another size, and is saved as " + film_name_.string(),
+            true);
     });
-    if (message_.bad) film_.reset();
+    if (!done) film_.reset();
 }
 
 }  // namespace palpate

@@ -103,7 +103,7 @@ class Viewer {
     /// What it holds stays there, or if it holds nothing, all that was left goes.
     void keep();
     void frame_selection();
-    void reset_camera() { orbit_.reset(); }
+    void reset_camera();
     void pause() { options.paused = !options.paused; }
     void step_once();
     void restart();
@@ -153,11 +153,11 @@ class Viewer {
     const FeelingHand* feeling() const { return feeling_.get(); }
     ivec2 view_size() const;  // of one of the pictures side by side
     struct Readings {
-        Recent simulate, map, draw;  // ms a picture
-        Recent pace;                 // s of the scene a second
-        Energy energy;
-        double largest_speed = 0;  // m/s
-        std::size_t memory = 0;    // bytes, of all moving states
+        Recent simulate, map, draw;    // ms a picture
+        Recent pace;                   // s of the scene a second
+        std::optional<Energy> energy;  // none where that would have to be read from a GPU
+        double largest_speed = 0;      // m/s
+        std::size_t memory = 0;        // bytes, of all moving states
     };
     const Readings& readings() const { return readings_; }
 
@@ -166,7 +166,7 @@ class Viewer {
 
     void begin(Prepared prepared);
     void say(const std::string& text, bool bad = false);
-    void attempt(const std::function<void()>& what) noexcept;
+    bool attempt(const std::function<void()>& what) noexcept;
     void take_import();
     void follow_compared();
     void reach_in();
@@ -178,11 +178,17 @@ class Viewer {
     void follow_device();
     void feel();
     void one_frame();
+    void replay_frame();
+    void live_frame();
     void add_film_frame();
     Traces traces() const;
     Quality quality();
     bool room_for(const Hold& hold) const;
-    std::filesystem::path free_name(const std::string& ending) const;
+    std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& ending) const;
+    void let_go();
+    void alter(const std::function<void()>& how, const std::string& said = {});
+    void finish_film();
+    bool is_drawn() const;
     void measure(double seconds);
     void draw_views();
 
@@ -193,12 +199,14 @@ class Viewer {
     std::unique_ptr<Import> import_;
     std::unique_ptr<Experiment> experiment_, beside_;
     Compared compared_;  // what beside_ is
-    std::optional<Recording> replay_;
+    std::optional<Recording> replay_,
+        coming_;  // what is replayed; what the scene that is being opened is for
     Orbit orbit_;
     Message message_;
 
     vec2 pointer_ = vec2(0);
     Drag drag_ = Drag::none;
+    Button drag_button_ = Button::left;  // that it goes on with
     std::vector<Hold> holds_;
     std::optional<std::size_t> active_;  // of the holds, the pointer's own
     std::optional<Hold> device_hold_;    // of a device that is no mouse
@@ -206,6 +214,7 @@ class Viewer {
     std::unique_ptr<FeelingHand> feeling_;
     Mouse* mouse_ = nullptr;  // feeling_'s, if that is its device
     DeviceKind feeling_device_ = DeviceKind::mouse;
+    std::string feeling_file_;
     float feeling_tip_ = 0;
     std::vector<Feel> feeling_feels_;
     int feeling_shapes_ = 0;
@@ -216,12 +225,16 @@ class Viewer {
     std::vector<vec3> selected_;  // m, around what was last taken hold of
 
     std::unique_ptr<Film> film_;
-    ivec2 film_size_ = ivec2(0);
+    ivec2 film_size_ = ivec2(0);  // of its pictures
     std::filesystem::path film_name_;
     long frames_ = 0;   // since it was opened
     double moved_ = 0;  // s, when something last moved
     int shapes_shown_ = -1;
     Quality quality_;
+    double drawn_ = 0;  // s, when the picture was last drawn, with
+    Look3d drawn_look_;
+    ivec2 drawn_size_ = ivec2(0);
+    Quality drawn_quality_;
     Readings readings_;
     double simulated_before_ = 0, mapped_before_ = 0, measured_ = 0, paced_ = 0;
 };

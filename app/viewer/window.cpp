@@ -85,7 +85,8 @@ struct Window::Parts {
     Viewer viewer;
     Gui gui;
     double last = now();
-    double due = 0;  // frames
+    double due = 0;        // frames
+    bool repeats = false;  // a key that is held down: what it wrote, it writes again and again
 
     explicit Parts(ivec2 size)
         : window(make_window(size)),
@@ -124,11 +125,12 @@ void Window::Parts::listen() {
     });
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
         ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
+        of(w).repeats = action == GLFW_REPEAT;
         if (action == GLFW_PRESS && !of(w).gui.wants_keys()) of(w).key(key, scancode, mods);
     });
     glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code) {
         ImGui_ImplGlfw_CharCallback(w, code);
-        if (!of(w).gui.wants_keys()) of(w).letter(code);
+        if (!of(w).gui.wants_keys() && !of(w).repeats) of(w).letter(code);
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
         if (count > 0) of(w).viewer.open_file(files[0]);

@@ -2,6 +2,7 @@
 #include "palpate/base/vectors.h"
 #include "palpate/body/collider.h"
 
+#include <cstddef>
 #include <span>
 
 namespace palpate {
@@ -38,10 +39,12 @@ struct Move {
     std::span<const vec3> to;  // m, one a node
 };
 
+inline constexpr std::size_t most_presses = 8, most_drags = 8;  // on a body at once
+
 /// What acts on a body from outside during one call of Solver::step, besides gravity.
 struct Influences {
-    std::span<const Press> presses = {};  // at most 8
-    std::span<const Drag> drags = {};     // at most 8
+    std::span<const Press> presses = {};
+    std::span<const Drag> drags = {};
     std::span<const Move> moves = {};
     std::span<const Motion> colliders =
         {};               // one for each of Simulation::colliders; or none, and all stand still

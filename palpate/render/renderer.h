@@ -24,6 +24,8 @@ struct Quality {
     bool shadows = true;  // that things cast on themselves and each other
     float scale = 1;      // 0.25 to 1: drawn with so many times as many pixels each way
     bool every_triangle = true;  // of a mesh; or at most about 24,000, between vertices that it has
+
+    bool operator==(const Quality&) const = default;
 };
 
 /// For things that move where the CPU has to draw them.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 namespace palpate {
@@ -22,11 +23,15 @@ std::string key_of(const Change& change) { return change.substr(0, change.find('
 // What has no say in a body's surface, in how it hangs, or in what else there is to see.
 bool leaves_shapes(const Change& change) {
     const std::string key = key_of(change), last = key.substr(key.rfind('.') + 1);
-    if (key.starts_with("simulation.") || key.starts_with("wind.")) return true;
+    if (key.starts_with("simulation.") || key == "wind" || key.starts_with("wind.")) return true;
+    if (key.find(".touch.") != std::string::npos) return true;
+    if (key.starts_with("collider."))  // planes and balls are drawn as they are at the moment
+        return last == "friction" || last == "margin" || key.find(".plane.") != std::string::npos ||
+               key.find(".sphere.") != std::string::npos;
     for (const char* one : {"youngs_modulus", "stiffness", "springs", "structural", "shear", "flexion",
                             "density", "mass", "damping", "link_damping", "pin"})
         if (last == one) return key.starts_with("body.");
-    return key.starts_with("body.") && key.find(".touch.") != std::string::npos;
+    return false;
 }
 
 bool same_shapes(const std::vector<Change>& a, const std::vector<Change>& b) {
@@ -92,6 +97,12 @@ struct Experiment::Made {
 
 namespace {
 
+// No two experiments of a program have the same.
+int number_of_new_shapes() {
+    static std::atomic<int> last = 0;
+    return ++last;
+}
+
 // Room for a hand in the step: the bound takes all of its strength to act on the lightest node.
 void expect_hands(Models& models) {
     float pull = 0, pressure = 0;
@@ -121,16 +132,24 @@ std::vector<double> known_frequencies(const Models& models, const Models& before
 }  // namespace
 
 Experiment::Experiment(Prepared prepared, const gl::Context* context)
-    : source_(std::move(prepared.source)), context_(context), history_{prepared.changes} {
+    : Experiment(std::move(prepared), context, nullptr) {}
+
+Experiment::Experiment(Prepared prepared, const gl::Context* context, const Experiment* other)
+    : source_(std::move(prepared.source)),
+      context_(context),
+      history_{prepared.changes},
+      shapes_(number_of_new_shapes()),
+      first_changes_(prepared.changes) {
     Made made{.changes = prepared.changes,
               .scene = std::make_unique<Scene>(std::move(prepared.scene)),
               .models = std::make_unique<Models>(std::move(prepared.models)),
               .report = std::make_unique<Report>(),
               .play = nullptr};
-    first_changes_ = made.changes;
     made.scene->simulation.force = made.models->simulation.force = true;
     expect_hands(*made.models);
-    made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_);
+    std::vector<double> known;
+    if (other) known = known_frequencies(*made.models, *other->models_, *other->play_);
+    made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_, known);
     take(std::move(made));
 }
 
@@ -157,7 +176,7 @@ void Experiment::take(Made made) {
 }
 
 // Bodies of the same nodes go on from where they are. A node that is held fast now has no speed.
-void Experiment::carry_over(Made& made) const {
+void Experiment::carry_over(Made& made) {
     const std::vector<State> before = play_->save();
     std::vector<State> states = made.play->save();
     for (std::size_t m = 0; m < states.size(); ++m) {
@@ -168,13 +187,29 @@ void Experiment::carry_over(Made& made) const {
             if (!(body.inverse_mass[i] > 0)) states[m].velocities[i] = dvec3(0);
     }
     made.play->restore(states);
-    if (made.scene->tools == scene_->tools) made.play->take_tools(*play_);
+    if (!fits(made)) return;
+    made.play->take_tools(*play_);
+    if (feels_of(*made.scene) == feels_of(*scene_)) made.play->take_probes(*play_);
+}
+
+// Whether what its tools touch and hold is what they did.
+bool Experiment::fits(const Made& made) const {
+    const auto &now = made.models->models, &before = models_->models;
+    if (made.scene->tools != scene_->tools || now.size() != before.size()) return false;
+    for (std::size_t m = 0; m < now.size(); ++m)
+        if (!same_nodes(now[m].body, before[m].body) ||
+            now[m].surface.triangles != before[m].surface.triangles)
+            return false;
+    return made.models->stills.size() == models_->stills.size() &&
+           std::equal(
+               made.models->stills.begin(), made.models->stills.end(), models_->stills.begin(),
+               [](const Still& a, const Still& b) { return a.surface.triangles == b.surface.triangles; });
 }
 
 void Experiment::set(std::vector<Change> changes) {
     Made made = make(changes);
     carry_over(made);
-    if (!same_shapes(changes, history_[at_])) ++shapes_;
+    if (!same_shapes(changes, history_[at_])) shapes_ = number_of_new_shapes();
     take(std::move(made));
     record({recorded_, SetChanges{std::move(changes)}});
 }
@@ -183,9 +218,11 @@ std::unique_ptr<Experiment> Experiment::beside(const std::vector<Change>& more) 
     Prepared prepared{source_, with(changes(), more), {}, {}};
     prepared.scene = parse_scene(source_, prepared.changes);
     prepared.models = rebuild(prepared.scene, *scene_, *models_);
-    auto other = std::make_unique<Experiment>(std::move(prepared), context_);
+    std::unique_ptr<Experiment> other(new Experiment(std::move(prepared), context_, this));
     other->play_->restore(play_->save());
+    other->play_->take_tools(*play_);
     other->frame_ = frame_;
+    other->records_ = false;
     return other;
 }
 
@@ -228,8 +265,8 @@ void Experiment::return_to_good() {
     const Good good = good_.front();
     Made made = make(good.changes);
     made.play->restore(good.states);
-    if (made.scene->tools == scene_->tools) made.play->take_tools(*play_);
-    if (!same_shapes(good.changes, changes())) ++shapes_;
+    if (fits(made)) made.play->take_tools(*play_);
+    if (!same_shapes(good.changes, changes())) shapes_ = number_of_new_shapes();
     take(std::move(made));
     record({recorded_, ReturnToGood{}});
     frame_ = good.frame;
@@ -300,35 +337,62 @@ Energy Experiment::energy() const {
 // ---- recordings ----
 
 void Experiment::record(Input input) {
-    if (inputs_.size() < most_inputs) inputs_.push_back(std::move(input));
+    if (records_ && inputs_.size() <= most_inputs) inputs_.push_back(std::move(input));
 }
 
 Recording Experiment::recording() const {
+    if (inputs_.size() > most_inputs)
+        throw Error("more inputs than a recording holds", "the experiment", "restart it to begin a new one");
     return {source_, first_changes_, inputs_, recorded_, fingerprint()};
 }
 
 bool Experiment::replay(const Recording& recording) {
-    if (recorded_ >= recording.frames) return false;
     Hands hands;
     for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= recorded_; ++replayed_) {
         const auto& what = recording.inputs[replayed_].what;
-        if (const auto* some = std::get_if<Hands>(&what))
+        if (const auto* some = std::get_if<Hands>(&what)) {
             hands = *some;
-        else if (const auto* set_to = std::get_if<SetChanges>(&what)) {
+        } else if (const auto* set_to = std::get_if<SetChanges>(&what)) {
             set(set_to->changes);
             history_.resize(at_ + 1);
             history_.push_back(set_to->changes);
             ++at_;
-        } else
+        } else {
             return_to_good();
+        }
     }
-    for (const Hands::Pull& pull : hands.pulls)
-        if (pull.body >= models_->models.size() || pull.drag.node < 0 ||
-            std::size_t(pull.drag.node) >= models_->models[pull.body].body.count())
-            throw Error(fmt::format("frame {} pulls a node that is not there", recorded_), "the recording",
-                        "replay it with the files that it was made with");
+    if (recorded_ >= recording.frames || !trouble_.empty()) return false;
+    if (!takes(hands))
+        throw Error(fmt::format("frame {} holds what no hand here can do", recorded_), "the recording",
+                    "replay it with the files that it was made with");
     advance(hands);
     return true;
+}
+
+bool Experiment::takes(const Hands& hands) const {
+    constexpr float most = 1e4f;  // times as strong as usual: a step may be a hundredth then, and no less
+    const auto& models = models_->models;
+    std::size_t presses = hands.presses.size();
+    std::vector<std::size_t> drags(models.size(), 0);
+    float pressure = 0;
+    for (const Model& model : models) pressure = std::max(pressure, strength_for(model.body).pressure);
+    for (const ToolRecipe& tool : scene_->tools) {
+        presses += tool.kind == ToolKind::press;
+        for (std::size_t& count : drags) count += tool.kind == ToolKind::drag;
+    }
+    for (const Press& press : hands.presses)
+        if (!(press.radius > 0 && press.stiffness >= 0 && pressure_per_metre(press) <= most * pressure))
+            return false;
+    for (const Hands::Pull& pull : hands.pulls) {
+        if (pull.body >= models.size()) return false;
+        const Body& body = models[pull.body].body;
+        if (pull.drag.node < 0 || std::size_t(pull.drag.node) >= body.count()) return false;
+        const float added = pull.drag.stiffness * body.inverse_mass[std::size_t(pull.drag.node)];
+        if (!(added >= 0 && added <= most * strength_for(body).pull)) return false;
+        ++drags[pull.body];
+    }
+    return presses <= most_presses &&
+           std::ranges::all_of(drags, [](std::size_t count) { return count <= most_drags; });
 }
 
 std::string Experiment::fingerprint() const {

@@ -38,6 +38,8 @@ class Experiment {
  public:
     /// On a GPU, in that context. Throws Error.
     explicit Experiment(Prepared prepared, const gl::Context* context = nullptr);
+    Experiment(Experiment&&) = default;
+    Experiment& operator=(Experiment&&) = delete;
 
     /// One frame of 1/60 s. False if the motion blew up, now or before: then all is as it was before that
     /// frame, and trouble() says so.
@@ -45,6 +47,10 @@ class Experiment {
 
     /// Another one with some more changes, that goes on from where this one is; hands may take hold of both.
     std::unique_ptr<Experiment> beside(const std::vector<Change>& more) const;
+
+    /// Whether bodies can take that beside the scene's own tools: nodes that are there, no more at once than
+    /// fit, and not out of all proportion to what they are made of.
+    bool takes(const Hands& hands) const;
 
     /// Why it does not go on, in one line; empty while it does.
     const std::string& trouble() const { return trouble_; }
@@ -90,10 +96,12 @@ class Experiment {
 
     // ---- its inputs ----
 
-    /// All that has been done to it since it began, or was restarted; see replay().
+    /// All that has been done to it since it began, or was restarted; see replay(). Throws Error if that was
+    /// too much to keep.
     Recording recording() const;
 
-    /// Does what a recording did at the coming frame, and goes on by that frame. False after its last.
+    /// Does what a recording did at the coming frame, and goes on by that frame. False after its last, or if
+    /// the motion has blown up for good.
     bool replay(const Recording& recording);
 
     /// Of all positions and velocities, to the bit.
@@ -106,9 +114,11 @@ class Experiment {
         std::vector<State> states;
     };
     struct Made;
+    Experiment(Prepared prepared, const gl::Context* context, const Experiment* other);
     Made make(const std::vector<Change>& changes) const;
+    bool fits(const Made& made) const;
     void take(Made made);
-    void carry_over(Made& made) const;
+    void carry_over(Made& made);
     void set(std::vector<Change> changes);
     void record(Input input);
     void remember();
@@ -124,8 +134,9 @@ class Experiment {
     std::string trouble_;
     long frame_ = 0;         // since time 0
     std::deque<Good> good_;  // the latest last
-    int shapes_ = 0;
+    int shapes_;
 
+    bool records_ = true;
     std::vector<Change> first_changes_;  // of the recording
     std::vector<Input> inputs_;
     long recorded_ = 0;         // frames of the recording so far

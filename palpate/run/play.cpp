@@ -154,14 +154,24 @@ void Play::restore(const std::vector<State>& states) {
     for (auto& velocities : velocities_) velocities.clear();
 }
 
-void Play::take_tools(Play& from) {
+void Play::take_tools(const Play& from) {
     assert(from.handles_.size() == handles_.size());
-    handles_ = std::move(from.handles_);
-    for (auto& handle : handles_)
-        if (auto* tip = std::get_if<Tip>(&handle)) tip->lies_over(skins());
+    for (std::size_t t = 0; t < handles_.size(); ++t)
+        if (const auto* tip = std::get_if<Tip>(&from.handles_[t])) {
+            Tip same = *tip;
+            same.lies_over(skins());
+            handles_[t] = std::move(same);
+        } else if (const auto* grip = std::get_if<Grip>(&from.handles_[t])) {
+            handles_[t] = *grip;
+        }
     tools_ = from.tools_;
     pushes_ = from.pushes_;
     time_ = from.time_;
+}
+
+void Play::take_probes(Play& from) {
+    for (std::size_t t = 0; t < handles_.size(); ++t)
+        if (std::holds_alternative<Probe>(from.handles_[t])) handles_[t] = std::move(from.handles_[t]);
 }
 
 std::size_t Play::memory() const {

@@ -15,8 +15,8 @@
 
 namespace palpate {
 
-/// What hands do to bodies during a frame, besides the scene's own tools. A body takes 8 presses and 8 drags
-/// at most, those of tools included.
+/// What hands do to bodies during a frame, besides the scene's own tools. A body takes most_presses and
+/// most_drags, those of tools included.
 struct Hands {
     struct Pull {
         std::size_t body = 0;  // its number
@@ -53,9 +53,11 @@ class Play {
     std::vector<State> save() const;
     void restore(const std::vector<State>& states);
 
-    /// Goes on from another play of a scene with the same tools: where its tools touched and what they hold
-    /// is theirs no more but this one's. Not the bodies; see restore().
-    void take_tools(Play& from);
+    /// Goes on from another play of a scene with the same tools and the same nodes and vertices: its tools
+    /// have touched what those had, and hold what those held. Not those that are felt, which begin anew.
+    void take_tools(const Play& from);
+    /// Those that are felt, which are the other's no more.
+    void take_probes(Play& from);
 
     double frequency(std::size_t body) const { return solvers_[body]->frequency(); }
 

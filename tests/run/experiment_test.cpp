@@ -204,6 +204,53 @@ TEST(Experiment, HandsPullAndFeelIt) {
     EXPECT_TRUE(experiment.play().pushes().pulls.empty());
 }
 
+TEST(Experiment, TakesNoMoreHandsThanFit) {
+    const std::string tools =
+        beam +
+        "[[tool]]\nradius = 0.02\npath = [[0, 1, 1, 1], [9, 1, 1, 1]]\n"
+        "[[tool]]\nkind = \"drag\"\nnear = [0.08, 0, 0]\npath = [[0, 0.1, 0, 0], [9, 0.1, 0, 0]]\n";
+    Experiment experiment = going(1, tools);
+    Hands hands;
+    for (std::size_t i = 0; i + 1 < most_presses; ++i) {
+        hands.presses.push_back({vec3(1), vec3(0), 0.01f, 1});
+        hands.pulls.push_back(pulling(8, vec3(0.1f)).pulls[0]);
+    }
+    EXPECT_TRUE(experiment.takes(hands));
+    EXPECT_TRUE(experiment.advance(hands));
+    Hands more = hands;
+    more.presses.push_back(more.presses[0]);
+    EXPECT_FALSE(experiment.takes(more));
+    more = hands;
+    more.pulls.push_back(more.pulls[0]);
+    EXPECT_FALSE(experiment.takes(more));
+    for (float wrong : {-1.0f, 1e30f, NAN}) {
+        more = hands;
+        more.pulls[2].drag.stiffness = wrong;
+        EXPECT_FALSE(experiment.takes(more)) << wrong;
+        more = hands;
+        more.presses[3].stiffness = wrong;
+        EXPECT_FALSE(experiment.takes(more)) << wrong;
+    }
+    more = hands;
+    more.presses[0].radius = 0;
+    EXPECT_FALSE(experiment.takes(more));
+}
+
+TEST(Experiment, ToolsGoOnThroughChanges) {
+    // A tip on its way presses as it would have: what it has touched is remembered.
+    const std::string tool = beam +
+                             "[[tool]]\nradius = 0.02\nfrom = [0.06, 0.2, 0.01]\n"
+                             "path = [[0, 0, 0, 0], [1, 0, -0.01, 0]]\n";
+    Experiment one = going(30, tool), other = going(30, tool);
+    other.change({"simulation.threads=2"});
+    const auto beside = one.beside({"body.1.mapping=\"frames\""});
+    for (int f = 0; f < 20; ++f) one.advance(), other.advance(), beside->advance();
+    EXPECT_EQ(one.fingerprint(), other.fingerprint());
+    EXPECT_EQ(one.fingerprint(), beside->fingerprint());
+    one.change({"body.1.dims=[9,5,3]"});  // other nodes: it begins anew, and holds nothing that is not there
+    for (int f = 0; f < 5; ++f) EXPECT_TRUE(one.advance());
+}
+
 TEST(Experiment, BesideItGoesOnFromTheSameState) {
     Experiment experiment = going(25);
     const auto other = experiment.beside({"body.1.mapping=\"frames\""});
@@ -279,6 +326,27 @@ TEST(Recording, OfAnotherMotionComesOutOtherwise) {
     Experiment again(prepare(recording.scene, recording.changes));
     while (again.replay(recording)) {}
     EXPECT_NE(again.fingerprint(), recording.fingerprint);
+}
+
+TEST(Recording, AMotionThatBlewUpBlowsUpAgainAndComesBack) {
+    Experiment experiment = going(90);
+    experiment.change({"simulation.step=" + std::to_string(1.4 * experiment.stable_step(0))});
+    for (int f = 0; f < 600 && experiment.trouble().empty(); ++f) experiment.advance();
+    ASSERT_FALSE(experiment.trouble().empty());
+    const Recording in_trouble = experiment.recording();
+    Experiment again(prepare(in_trouble.scene, in_trouble.changes));
+    while (again.replay(in_trouble)) {}
+    EXPECT_EQ(again.fingerprint(), experiment.fingerprint());
+    EXPECT_EQ(again.trouble(), experiment.trouble());
+    experiment.return_to_good();
+    experiment.change({"simulation.step=\"auto\""});
+    for (int f = 0; f < 9; ++f) experiment.advance();
+    experiment.pin(0, {40}, true);  // after the last frame
+    const Recording recording = experiment.recording();
+    Experiment third(prepare(recording.scene, recording.changes));
+    while (third.replay(recording)) {}
+    EXPECT_EQ(third.fingerprint(), experiment.fingerprint());
+    EXPECT_TRUE(third.is_pinned(0, 40));
 }
 
 TEST(Recording, WhatIsWrongWithAFileIsSaid) {

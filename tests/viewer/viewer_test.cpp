@@ -346,6 +346,24 @@ TEST_F(ViewerTest, TheSameSceneSideBySideIsTheSame) {
     EXPECT_FALSE(viewer.beside());
 }
 
+TEST_F(ViewerTest, AnotherComparisonIsShownAnew) {
+    open("drape", {"body.1.cloth=[12,12]"});
+    viewer.advance(20);
+    Image seen[2];
+    for (int i = 0; i < 2; ++i) {
+        viewer.options.compared = {.with = Compared::With::mapping,
+                                   .mapping = i == 0 ? Mapping::frames : Mapping::one_to_one};
+        viewer.advance(0);
+        ASSERT_TRUE(viewer.beside()) << viewer.message().text;
+        seen[i] = viewer.image();
+    }
+    EXPECT_EQ(seen[0].width, seen[1].width);
+    open("box");  // and of another scene nothing is left
+    viewer.options.compared = {.with = Compared::With::backend, .backend = Backend::reference};
+    viewer.advance(1);
+    EXPECT_GT(difference(viewer.image(), seen[1]), 1);
+}
+
 TEST_F(ViewerTest, StereoShowsTwoEyes) {
     open("box");
     const Image mono = viewer.image();
@@ -449,7 +467,12 @@ TEST_F(ViewerTest, SavesWhatCanBeOpenedAgain) {
     viewer.save_picture();
     EXPECT_TRUE(std::filesystem::exists(scratch / "box-2.png"));
     viewer.open_file(scratch / "box-1.json");
-    wait_until_open(viewer);
+    const Experiment* open_before = viewer.experiment();
+    while (viewer.importing()) {  // what was open goes on meanwhile, and not by the recording
+        viewer.advance(1);
+        EXPECT_TRUE(viewer.experiment() != open_before || !viewer.replaying());
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     ASSERT_TRUE(viewer.replaying()) << viewer.message().text;
     for (int f = 0; f < 100 && viewer.replaying(); ++f) viewer.advance(1);
     EXPECT_FALSE(viewer.message().bad) << viewer.message().text;
