@@ -110,6 +110,13 @@ std::optional<Hit> pick(const Ray& ray, std::span<const Skin> skins) {
     return hit;
 }
 
+Bounds bounds_of(std::span<const Skin> skins) {
+    Bounds box;
+    for (const Skin& skin : skins)
+        for (vec3 p : skin.positions) box.include(p);
+    return box;
+}
+
 void Orbit::turn(vec2 pixels, int height) {
     const Axes axes(camera_);
     const float scale = 3.5f / float(std::max(height, 1));  // radians a pixel

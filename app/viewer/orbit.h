@@ -34,6 +34,9 @@ struct Hit {
 };
 std::optional<Hit> pick(const Ray& ray, std::span<const Skin> skins);
 
+/// Around all skins.
+Bounds bounds_of(std::span<const Skin> skins);
+
 /// A camera that a pointer moves. Angles and shifts come in pixels of a picture that is so many pixels high,
 /// so that it feels the same in every window.
 class Orbit {

@@ -1,0 +1,370 @@
+#include "app/viewer/panel.h"
+
+#include "app/viewer/style.h"
+#include "palpate/run/run.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace palpate {
+namespace {
+
+// ---- controls ----
+
+// A name out of all of an enumeration's.
+template <class E>
+bool choose(const char* label, E& value) {
+    bool chosen = false;
+    if (!ImGui::BeginCombo(label, std::string(name_of(value)).c_str())) return false;
+    for (const auto& one : names(E{}))
+        if (ImGui::Selectable(std::string(one.name).c_str(), one.value == value)) {
+            value = one.value;
+            chosen = true;
+        }
+    ImGui::EndCombo();
+    return chosen;
+}
+
+// Whether a slider has moved, and whether it has been moving before: then both are one change.
+struct Slid {
+    bool moved = false, again = false;
+};
+
+// There is one pointer, and it holds one slider at a time.
+Slid slid(bool moved) {
+    static bool has_moved = false;  // since it was taken hold of
+    if (ImGui::IsItemActivated()) has_moved = false;
+    const Slid result{moved, moved && has_moved};
+    has_moved |= moved;
+    return result;
+}
+
+Slid slide(const char* label, float& value, float low, float high, const char* format,
+           bool logarithmic = false) {
+    return slid(
+        ImGui::SliderFloat(label, &value, low, high, format,
+                           (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp));
+}
+
+// The same for what takes the solver a while: it counts when it is let go of.
+bool slide_and_let_go(const char* label, float& value, float low, float high, const char* format) {
+    static ImGuiID held = 0;
+    static float at = 0;  // where that is
+    const ImGuiID here = ImGui::GetID(label);
+    if (held == here) value = at;
+    ImGui::SliderFloat(label, &value, low, high, format,
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemActive()) {
+        held = here;
+        at = value;
+    } else if (held == here) {
+        held = 0;
+        return ImGui::IsItemDeactivatedAfterEdit();
+    }
+    return false;
+}
+
+std::string number(double value) { return fmt::format("{:.6g}", value); }
+
+// ---- the parts ----
+
+void show_hand(Viewer& viewer) {
+    Options& options = viewer.options;
+    for (const auto& mode : names(Mode{})) {
+        if (mode.value != Mode::pull) ImGui::SameLine();
+        if (ImGui::RadioButton(std::string(mode.name).c_str(), options.mode == mode.value))
+            options.mode = mode.value;
+    }
+    const float most = std::max(0.05f, 2 * options.tip);
+    float millimetres = 1000 * options.tip;
+    if (ImGui::SliderFloat("tip", &millimetres, 1, 1000 * most, "%.1f mm",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+        options.tip = millimetres / 1000;
+    about("the radius of what presses, dents and pins");
+    if (options.mode == Mode::pin) return;
+    choose("device", options.device);
+    about("what moves the hand; a mouse is felt only where it dents");
+    if (options.device == DeviceKind::mouse) return;
+    static char file[512] = "";
+    ImGui::InputTextWithHint(options.device == DeviceKind::playback ? "log" : "path",
+                             options.device == DeviceKind::playback ? "felt.csv" : "rows of t, x, y, z", file,
+                             sizeof file);
+    if (ImGui::IsItemDeactivatedAfterEdit()) options.device_file = file;
+}
+
+void show_dent_width(Viewer& viewer) {
+    auto show = [&](const char* kind, std::size_t i, const BodyRecipe recipe) {
+        float width = 1000 * float(recipe.feel.dent_width);
+        if (const Slid s = slide(("dent in " + recipe.name).c_str(), width, 1, 50, "%.1f mm", true); s.moved)
+            viewer.change({fmt::format("{}.{}.touch.width={}", kind, i + 1, number(width / 1000))}, s.again);
+        about("the width of dents in it: their standard deviation");
+    };
+    // Asked for anew each time, since a change makes another scene.
+    auto scene = [&]() -> const Scene& { return viewer.experiment()->scene(); };
+    for (std::size_t i = 0; i < scene().bodies.size(); ++i) show("body", i, scene().bodies[i]);
+    for (std::size_t i = 0; i < scene().surfaces.size(); ++i) show("surface", i, scene().surfaces[i]);
+}
+
+void show_motion(Viewer& viewer) {
+    const Simulation simulation = viewer.experiment()->models().simulation;  // a change makes another
+    Integrator integrator = simulation.integrator;
+    if (choose("integrator", integrator))
+        viewer.change({fmt::format("simulation.integrator=\"{}\"", name_of(integrator))});
+    Backend backend = simulation.backend;
+    if (choose("backend", backend))
+        viewer.change({fmt::format("simulation.backend=\"{}\"", name_of(backend))});
+    about("where it is computed; the motion goes on from where it is");
+    if (backend == Backend::cpu) {
+        int threads = simulation.threads;
+        if (const Slid s =
+                slid(ImGui::SliderInt("threads", &threads, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp));
+            s.moved)
+            viewer.change({fmt::format("simulation.threads={}", threads)}, s.again);
+    }
+}
+
+// The step beside the longest that is stable.
+void show_step(Viewer& viewer) {
+    const Experiment& experiment = *viewer.experiment();
+    const double step = experiment.models().simulation.step;  // a change makes other models
+    double bound = 1;
+    for (std::size_t m = 0; m < experiment.models().models.size(); ++m)
+        bound = std::min(bound, experiment.stable_step(m));
+    bool automatic = step == 0;
+    double taken = automatic ? frame_seconds / experiment.play().steps_per_frame() : step;
+    for (const Stats& stats : experiment.play().stats())
+        if (automatic) taken = std::max(taken, stats.step);
+    if (ImGui::Checkbox("automatic step", &automatic))
+        viewer.change({automatic ? std::string("simulation.step=\"auto\"")
+                                 : "simulation.step=" + number(std::clamp(taken, 1e-5, 0.0166))});
+    if (!automatic) {
+        float milliseconds = float(1000 * step);
+        const float high = float(std::min(1.5 * 1000 * bound, 16.6));
+        if (slide_and_let_go("step", milliseconds, 0.02f, std::max(high, 0.05f), "%.3f ms"))
+            viewer.change({"simulation.step=" + number(milliseconds / 1000.0)});
+    } else {
+        ImGui::Text("step %.3f ms", 1000 * taken);
+    }
+    const bool unstable = step > bound;
+    if (unstable)
+        ImGui::TextColored(warning, "unstable above %.3f ms", 1000 * bound);
+    else
+        ImGui::TextColored(quiet, "stable up to %.3f ms, untouched", 1000 * bound);
+}
+
+void show_body(Viewer& viewer, std::size_t b) {
+    const BodyRecipe recipe = viewer.experiment()->scene().bodies[b];  // a change makes another scene
+    auto change = [&](const std::string& key, const std::string& value) {
+        viewer.change({fmt::format("body.{}.{}={}", b + 1, key, value)});
+    };
+    Mapping mapping = recipe.mapping;
+    if (choose("mapping", mapping)) change("mapping", fmt::format("\"{}\"", name_of(mapping)));
+    about("how the surface follows the nodes");
+    const Material& material = recipe.material;
+    auto amount = [&](const char* label, const char* key, float value, const char* format) {
+        if (!(value > 0)) return;
+        const float middle = std::pow(10.0f, std::round(std::log10(value)));
+        if (slide_and_let_go(label, value, middle / 100, middle * 100, format)) change(key, number(value));
+    };
+    amount("Young's mod.", "youngs_modulus", material.youngs_modulus, "%.3g Pa");
+    amount("stiffness", "stiffness", material.stiffness, "%.3g N/m");
+    if (recipe.springs) {
+        amount("structural", "springs.structural", recipe.springs->structural, "%.3g N/m");
+        amount("shear", "springs.shear", recipe.springs->shear, "%.3g N/m");
+        amount("flexion", "springs.flexion", recipe.springs->flexion, "%.3g N/m");
+    }
+    amount("density", "density", material.density, recipe.is_cloth() ? "%.3g kg/m²" : "%.4g kg/m³");
+    amount("mass", "mass", material.mass, "%.3g kg");
+    float damping = material.damping;
+    if (slide_and_let_go("damping", damping, 0, 50, "%.2f 1/s")) change("damping", number(damping));
+}
+
+void show_surroundings(Viewer& viewer) {
+    const Experiment& experiment = *viewer.experiment();
+    vec3 gravity = experiment.scene().simulation.gravity;
+    if (const Slid s = slid(ImGui::SliderFloat3("gravity", &gravity.x, -20, 20, "%.1f")); s.moved)
+        viewer.change({fmt::format("simulation.gravity=[{},{},{}]", gravity.x, gravity.y, gravity.z)},
+                      s.again);
+    about("m/s²");
+    constexpr float usual_air = 1.2f;  // kg/m³
+    const float air = experiment.scene().simulation.air;
+    vec3 wind =
+        experiment.scene().wind.empty() ? vec3(0) : position(experiment.scene().wind, experiment.time());
+    if (const Slid s = slid(ImGui::SliderFloat3("wind", &wind.x, -15, 15, "%.1f")); s.moved)
+        viewer.change({fmt::format("wind={{velocity=[{},{},{}]}}", wind.x, wind.y, wind.z),
+                       "simulation.air=" + number(air > 0 ? air : usual_air)},
+                      s.again);
+    about("m/s; moves sheets and surfaces");
+    for (std::size_t c = 0; c < experiment.scene().colliders.size(); ++c) {
+        const Collider collider = experiment.scene().colliders[c].collider;  // a change makes another scene
+        ImGui::PushID(int(c));
+        auto change = [&](const std::string& key, const std::string& value, bool again) {
+            viewer.change({fmt::format("collider.{}.{}={}", c + 1, key, value)}, again);
+        };
+        ImGui::TextColored(quiet, "collider %d", int(c) + 1);
+        float friction = collider.friction;
+        if (const Slid s = slide("friction", friction, 0, 2, "%.2f"); s.moved)
+            change("friction", number(friction), s.again);
+        if (const auto* plane = std::get_if<Plane>(&collider.shape)) {
+            float offset = plane->offset;
+            if (const Slid s = slide("height", offset, -1, 1, "%.3f m"); s.moved)
+                change("plane.offset", number(offset), s.again);
+        } else if (const auto* sphere = std::get_if<Sphere>(&collider.shape)) {
+            vec3 centre = sphere->centre;
+            if (const Slid s = slid(ImGui::SliderFloat3("centre", &centre.x, -1, 1, "%.3f")); s.moved)
+                change("sphere.centre", fmt::format("[{},{},{}]", centre.x, centre.y, centre.z), s.again);
+        }
+        ImGui::PopID();
+    }
+}
+
+void show_look(Viewer& viewer) {
+    Options& options = viewer.options;
+    ImGui::Checkbox("wireframe", &options.look.wireframe);
+    ImGui::SameLine();
+    ImGui::Checkbox("lattice", &options.look.springs);
+    ImGui::Checkbox("normals as colours", &options.look.normals);
+    ImGui::Checkbox("normal maps", &options.look.normal_maps);
+    ImGui::SameLine();
+    ImGui::Checkbox("culling", &options.look.culling);
+    about("what cannot be seen is left out before it is mapped");
+    static constexpr const char* cares[] = {"automatic", "draft", "full"};
+    int care = int(options.care);
+    if (ImGui::Combo("quality", &care, cares, 3)) options.care = Care(care);
+    about("automatic: a draft while things move, where the CPU has to draw");
+    ImGui::Checkbox("stereo, side by side", &options.stereo);
+}
+
+void show_comparison(Viewer& viewer) {
+    Compared& compared = viewer.options.compared;
+    static constexpr const char* with[] = {"nothing", "another mapping", "another backend"};
+    int which = int(compared.with);
+    if (ImGui::Combo("beside it", &which, with, 3)) compared.with = Compared::With(which);
+    about("the same scene once more on the right, under the same hands");
+    if (compared.with == Compared::With::mapping) choose("its mapping", compared.mapping);
+    if (compared.with == Compared::With::backend) choose("its backend", compared.backend);
+}
+
+void plot(const char* name, const Recent& curve) {
+    auto value = [](void* data, int i) { return static_cast<const Recent*>(data)->at(std::size_t(i)); };
+    const std::string text = fmt::format("{} {:.1f} ms", name, curve.mean());
+    ImGui::PlotLines("##", value, const_cast<Recent*>(&curve), int(curve.count()), 0, text.c_str(), 0,
+                     std::max(curve.most(), 1.0f),
+                     {ImGui::GetContentRegionAvail().x, 2.6f * ImGui::GetFontSize()});
+}
+
+void show_readings(const Viewer& viewer) {
+    const Viewer::Readings& readings = viewer.readings();
+    for (auto [name, curve] :
+         {std::pair("simulate", &readings.simulate), {"map", &readings.map}, {"draw", &readings.draw}}) {
+        ImGui::PushID(name);
+        plot(name, *curve);
+        ImGui::PopID();
+    }
+    const float sum = readings.simulate.mean() + readings.map.mean() + readings.draw.mean();
+    ImGui::Text("%.0f pictures a second, %.2f of real time", ImGui::GetIO().Framerate, readings.pace.mean());
+    about(fmt::format("the three together: {:.1f} ms", sum).c_str());
+    if (readings.energy)
+        ImGui::Text("energy %.3g J moving, %.3g J in springs", readings.energy->kinetic,
+                    readings.energy->elastic);
+    else
+        ImGui::TextColored(quiet, "energy: on the GPU");
+    ImGui::Text("largest speed %.3g m/s", readings.largest_speed);
+    ImGui::Text("state %.1f MB", double(readings.memory) / 1e6);
+    if (const FeelingHand* hand = viewer.feeling()) {
+        const LoopTiming& timing = hand->timing();
+        const double mean = timing.periods.mean();
+        ImGui::Text("haptics %.1f Hz of %.0f", mean > 0 ? 1 / mean : 0, hand->rate());
+        ImGui::Text("period 99.9 %% %.2f ms, longest %.2f ms", 1000 * timing.periods.quantile(0.999),
+                    1000 * timing.periods.longest());
+        ImGui::TextColored(quiet, "scheduled: %s", hand->granted().c_str());
+        const Felt felt = hand->felt();
+        ImGui::Text("force %.2f N", double(glm::length(felt.force)));
+        if (felt.held != Held::no) ImGui::TextColored(quiet, "%s", std::string(name_of(felt.held)).c_str());
+    }
+}
+
+void show_files(Viewer& viewer) {
+    if (ImGui::Button("scene")) viewer.save_scene();
+    ImGui::SameLine();
+    if (ImGui::Button("picture")) viewer.save_picture();
+    ImGui::SameLine();
+    if (ImGui::Button("surface")) viewer.save_surface();
+    if (ImGui::Button(viewer.filming() ? "end film" : "film")) viewer.start_or_stop_film();
+    ImGui::SameLine();
+    if (ImGui::Button("recording")) viewer.save_recording();
+    about("all inputs with their times, to replay to the bit");
+}
+
+void show_steering(Viewer& viewer) {
+    const Experiment& experiment = *viewer.experiment();
+    if (ImGui::Button(viewer.options.paused ? "go on" : "pause")) viewer.pause();
+    ImGui::SameLine();
+    if (ImGui::Button("a frame")) viewer.step_once();
+    ImGui::SameLine();
+    if (ImGui::Button("restart")) viewer.restart();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!experiment.can_undo());
+    if (ImGui::Button("undo")) viewer.undo();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!experiment.can_redo());
+    if (ImGui::Button("redo")) viewer.redo();
+    ImGui::EndDisabled();
+    if (experiment.trouble().empty()) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, warning);
+    ImGui::TextWrapped("The motion blew up and is held where it was last sound: %s.",
+                       experiment.trouble().c_str());
+    ImGui::PopStyleColor();
+    if (ImGui::Button("return to the last good state")) viewer.return_to_good();
+}
+
+}  // namespace
+
+void show_panel(Viewer& viewer, float scale) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({panel_width * scale, ImGui::GetIO().DisplaySize.y});
+    const Experiment& experiment = *viewer.experiment();
+    const std::string title =
+        fmt::format("{}   {:.1f} s###panel", std::filesystem::path(experiment.source().name).stem().string(),
+                    experiment.time());
+    if (ImGui::Begin(title.c_str(), nullptr,
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse)) {
+        ImGui::PushItemWidth(-110 * scale);
+        auto part = [](const char* name, bool open, auto show) {
+            if (ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) show();
+        };
+        show_steering(viewer);
+        part("hand", true, [&] {
+            show_hand(viewer);
+            if (viewer.options.mode == Mode::dent) show_dent_width(viewer);
+        });
+        if (!experiment.scene().bodies.empty())
+            part("motion", true, [&] {
+                show_motion(viewer);
+                show_step(viewer);
+            });
+        for (std::size_t b = 0; b < viewer.experiment()->scene().bodies.size(); ++b) {
+            ImGui::PushID(int(b));
+            const std::string name = "body " + viewer.experiment()->scene().bodies[b].name;
+            part(name.c_str(), b == 0, [&] { show_body(viewer, b); });
+            ImGui::PopID();
+        }
+        part("surroundings", false, [&] { show_surroundings(viewer); });
+        part("look", false, [&] {
+            show_look(viewer);
+            show_comparison(viewer);
+        });
+        part("readings", true, [&] { show_readings(viewer); });
+        part("save", false, [&] { show_files(viewer); });
+        ImGui::TextColored(quiet, "? lists all keys");
+        ImGui::PopItemWidth();
+    }
+    ImGui::End();
+}
+
+}  // namespace palpate

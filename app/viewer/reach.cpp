@@ -1,0 +1,278 @@
+// The viewer's hands: the pointer's, those that were left, and a device's.
+#include "app/viewer/viewer.h"
+#include "palpate/base/clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr float away = 0.02f;       // m: so far before a surface a hand waits that does not dent it
+constexpr float dent_depth = 0.6f;  // in radii of its tip
+
+// Side by side the same point is in both halves.
+vec2 in_view(vec2 pixel, ivec2 view, ivec2 whole) {
+    if (view.x < whole.x && pixel.x >= float(view.x)) pixel.x -= float(view.x);
+    return pixel;
+}
+
+}  // namespace
+
+void Viewer::look_with_mouse() {
+    if (!mouse_) return;
+    looked_ = view_size();
+    mouse_->look(camera(), looked_);
+}
+
+void Viewer::press(Button button, bool shift, bool alt) {
+    if (!experiment_ || drag_ != Drag::none) return;
+    drag_button_ = button;
+    moved_ = now();
+    if (button == Button::middle || (button == Button::right && shift)) {
+        drag_ = Drag::pan;
+    } else if (button == Button::right || alt) {
+        drag_ = Drag::turn;
+    } else {
+        attempt([&] { reach_in(); });
+    }
+}
+
+void Viewer::reach_in() {
+    const Ray ray = ray_through(camera(), in_view(pointer_, view_size(), size_), view_size());
+    const auto hit = pick(ray, experiment_->play().skins());
+    if (!hit) {
+        drag_ = Drag::turn;  // beside everything
+        return;
+    }
+    touched_ = true;
+    selected_.assign({hit->place - 4 * options.tip, hit->place + 4 * options.tip});
+    if (options.mode == Mode::dent) return start_denting();
+    if (hit->surface >= experiment_->models().models.size())
+        return say("nothing moves this surface; it can be dented");
+    if (replay_) return say("a recording is replayed; press R to begin anew");
+    if (options.mode == Mode::pin) return pin_at(*hit);
+    Hold hold = options.mode == Mode::pull ? Hold::pulling(*experiment_, *hit)
+                                           : Hold::pressing(*experiment_, *hit, ray, options.tip);
+    if (!room_for(hold))
+        return say("no more hands fit on this body; press K to let go of those you left", true);
+    holds_.push_back(hold);
+    active_ = holds_.size() - 1;
+    drag_ = Drag::hold;
+    depth_ = glm::dot(hold.target() - camera().eye, forward_of(camera()));
+}
+
+// Beside all others.
+bool Viewer::room_for(const Hold& hold) const {
+    std::vector<Hold> all = holds();
+    all.push_back(hold);
+    Hands hands;
+    for (Hold& one : all) one.add_to(hands);
+    return experiment_->takes(hands);
+}
+
+void Viewer::pin_at(const Hit& hit) {
+    const Body& body = experiment_->models().models[hit.surface].body;
+    const auto positions = experiment_->play().nodes(hit.surface).positions;
+    int nearest = 0;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (glm::distance(positions[i], hit.place) <
+            glm::distance(positions[std::size_t(nearest)], hit.place))
+            nearest = int(i);
+    const bool fast = !experiment_->is_pinned(hit.surface, nearest);
+    std::vector<int> nodes;
+    const float reach = std::max(options.tip, 0.5f * body.spacing);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (int(i) == nearest || glm::distance(positions[i], positions[std::size_t(nearest)]) <= reach)
+            nodes.push_back(int(i));
+    alter([&] { experiment_->pin(hit.surface, nodes, fast); },
+          fmt::format("{} {} node{}", fast ? "pinned" : "let go of", nodes.size(),
+                      nodes.size() > 1 ? "s" : ""));
+}
+
+void Viewer::release(Button button) {
+    if (button != drag_button_) return;
+    moved_ = now();
+    if (drag_ == Drag::hold && active_) {
+        holds_.erase(holds_.begin() + std::ptrdiff_t(*active_));
+        active_.reset();
+    }
+    if (denting_) {
+        denting_ = false;
+        push_ = 0;
+        follow_pointer();
+    }
+    drag_ = Drag::none;
+}
+
+void Viewer::move_pointer(vec2 pixel) {
+    pixel.x -= float(left_);
+    const vec2 by = pixel - pointer_;
+    pointer_ = pixel;
+    if (!experiment_) return;
+    if (drag_ == Drag::turn || drag_ == Drag::pan) {
+        drag_ == Drag::turn ? orbit_.turn(by, size_.y) : orbit_.pan(by, size_.y);
+        moved_ = now();
+        look_with_mouse();
+        return;
+    }
+    if (!active_) return;  // what feels follows once a picture
+    moved_ = now();
+    follow_pointer();
+}
+
+// What it holds goes along, as deep in the picture as it is.
+vec3 Viewer::follow_pointer() {
+    const vec2 pixel = in_view(pointer_, view_size(), size_);
+    const Ray ray = ray_through(camera(), pixel, view_size());
+    const vec3 forward = forward_of(camera());
+    if (active_) {
+        const float start = glm::dot(ray.from - camera().eye, forward);
+        holds_[*active_].go_to(ray.at((depth_ - start) / glm::dot(ray.along, forward)));
+    }
+    if (!mouse_) return ray.at(depth_);
+    // A hand that dents follows the surface under the pointer; where there is none it stays as deep.
+    if (const auto hit = pick(ray, experiment_->play().skins())) {
+        const float goal = hit->way * glm::dot(ray.along, forward) + (denting_ ? push_ : -away);
+        notches_ = (goal - glm::distance(camera().look_at, camera().eye)) / MouseSettings{}.notch;
+    }
+    mouse_->point({.time = now(), .position = pixel, .buttons = denting_ ? 1u : 0u, .wheel = notches_});
+    const float depth = glm::distance(camera().look_at, camera().eye) + notches_ * MouseSettings{}.notch;
+    return ray.at(depth / glm::dot(ray.along, forward));
+}
+
+void Viewer::wheel(float notches) {
+    if (!experiment_) return;
+    moved_ = now();
+    if (active_) {
+        depth_ += notches * 0.25f * options.tip;
+        follow_pointer();
+    } else if (denting_) {
+        push_ = std::clamp(push_ + notches * 0.15f * options.tip, 0.0f, 4 * options.tip);
+        follow_pointer();
+    } else {
+        orbit_.zoom(notches);
+        look_with_mouse();
+    }
+}
+
+void Viewer::keep() {
+    if (denting_) return;
+    moved_ = now();
+    if (active_) {
+        active_.reset();
+        drag_ = Drag::none;
+        say("it stays there; K again lets go");
+    } else {
+        let_go();
+    }
+}
+
+void Viewer::frame_selection() {
+    if (!experiment_) return;
+    Bounds box;
+    for (vec3 p : selected_) box.include(p);
+    orbit_.frame(box.empty() ? bounds_of(experiment_->play().skins()) : box);
+    look_with_mouse();
+    selected_.clear();
+    moved_ = now();
+}
+
+void Viewer::reset_camera() {
+    orbit_.reset();
+    look_with_mouse();
+    moved_ = now();
+}
+
+// ---- the hand that feels ----
+
+void Viewer::make_feeling_hand() {
+    // Whatever is no mouse needs a file, and waits for it to be named.
+    const bool by_mouse = options.device == DeviceKind::mouse && options.mode == Mode::dent;
+    const bool by_device =
+        options.device != DeviceKind::mouse && options.mode != Mode::pin && !options.device_file.empty();
+    const bool wanted = experiment_ && (by_mouse || by_device);
+    const bool fits = feeling_ && feeling_device_ == options.device && feeling_file_ == options.device_file &&
+                      feeling_tip_ == options.tip && feeling_shapes_ == experiment_->shapes() &&
+                      feeling_feels_ == feels_of(experiment_->scene());
+    if (wanted && fits) return;
+    if (!wanted && !feeling_) return;
+    feeling_.reset();
+    mouse_ = nullptr;
+    if (!wanted) return;
+    attempt([&] {
+        DeviceSettings settings{.path = {}, .mouse = {.camera = camera(), .size = view_size()}, .log = {}};
+        if (options.device == DeviceKind::playback) settings.log = options.device_file;
+        if (options.device == DeviceKind::hand || options.device == DeviceKind::script)
+            settings.path = read_path(options.device_file);
+        auto device = make_device(options.device, settings);
+        vec3 start = settings.path.empty() ? camera().look_at : settings.path.front().position;
+        if (options.device == DeviceKind::mouse) {
+            mouse_ = static_cast<Mouse*>(device.get());
+            start = follow_pointer();  // so that it begins there and does not come from elsewhere
+        }
+        feeling_ = std::make_unique<FeelingHand>(std::move(device), feels_of(experiment_->scene()),
+                                                 options.tip, start, experiment_->play().skins());
+    });
+    if (!feeling_) {  // and it is said why
+        mouse_ = nullptr;
+        options.device_file.clear();
+        if (by_mouse) options.mode = Mode::pull;
+    }
+    feeling_device_ = options.device;
+    feeling_file_ = options.device_file;
+    feeling_tip_ = options.tip;
+    feeling_feels_ = feels_of(experiment_->scene());
+    feeling_shapes_ = experiment_->shapes();
+    looked_ = view_size();
+}
+
+// A device that is no mouse does what is chosen too: it presses wherever it is, or takes hold of what it
+// touches until its first button is pressed.
+void Viewer::follow_device() {
+    const bool acts = feeling_ && options.device != DeviceKind::mouse &&
+                      !experiment_->models().models.empty() &&
+                      (options.mode == Mode::pull || options.mode == Mode::press);
+    const Felt felt = acts ? feeling_->felt() : Felt{};
+    const bool presses = options.mode == Mode::press;
+    const bool lets_go = !acts || (!presses && felt.buttons & 1);
+    if (device_hold_ && (lets_go || device_hold_->presses() != presses || !device_hold_->fits(*experiment_)))
+        device_hold_.reset();
+    if (lets_go || felt.time == 0) return;
+    std::optional<Hold> begun;
+    if (!device_hold_ && presses) {
+        begun = Hold::tip(*experiment_, 0, felt.hand, options.tip);
+    } else if (!device_hold_ && felt.count > felt.lasting) {
+        const auto touched = std::size_t(felt.surfaces[std::size_t(felt.lasting)]);
+        if (touched < experiment_->models().models.size())
+            begun = Hold::pulling(*experiment_, {.surface = touched, .place = felt.hand});
+    }
+    if (begun && room_for(*begun)) device_hold_ = begun;
+    if (device_hold_) device_hold_->go_to(felt.hand);
+}
+
+std::vector<Hold> Viewer::holds() const {
+    std::vector<Hold> all = holds_;
+    if (device_hold_) all.push_back(*device_hold_);
+    return all;
+}
+
+void Viewer::start_denting() {
+    if (!mouse_) return;
+    denting_ = true;
+    push_ = dent_depth * options.tip;
+    drag_ = Drag::hold;
+    follow_pointer();
+}
+
+void Viewer::feel() {
+    make_feeling_hand();
+    if (!feeling_) return;
+    if (looked_ != view_size()) look_with_mouse();
+    feeling_->feel(experiment_->play().skins());
+    if (mouse_) follow_pointer();
+}
+
+}  // namespace palpate
