@@ -128,8 +128,9 @@ void show_hint(const Viewer& viewer, bool touched, float scale) {
     ImGui::End();
 }
 
-void show_help_window(const Viewer& viewer, bool& open) {
-    in_middle(viewer, 0.5f);
+void show_help_window(bool& open) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, 0, {0.5f, 0.5f});
     ImGui::SetNextWindowBgAlpha(0.97f);
     ImGui::SetNextWindowFocus();
     ImGui::Begin("keys", nullptr, bare & ~ImGuiWindowFlags_NoFocusOnAppearing);
@@ -245,7 +246,7 @@ void Gui::draw(Viewer& viewer) {
         show_hint(viewer, viewer.touched(), scale_);
     }
     if (viewer.importing()) show_import(viewer);
-    if (shows_help) show_help_window(viewer, shows_help);
+    if (shows_help) show_help_window(shows_help);
     show_message(viewer, scale_);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
