@@ -222,6 +222,17 @@ void show_surroundings(Viewer& viewer) {
     }
 }
 
+// A plane under everything, for what is let go of.
+void show_ground(Viewer& viewer) {
+    if (!ImGui::Button("add a ground")) return;
+    const Experiment& experiment = *viewer.experiment();
+    const Bounds box = bounds_of(experiment.play().skins());
+    if (box.empty()) return;
+    const float height = box.low.y - 0.05f * box.size().y;
+    viewer.change({fmt::format("collider.{}={{plane={{offset={}}},friction=0.4}}",
+                               experiment.scene().colliders.size() + 1, number(height))});
+}
+
 void show_look(Viewer& viewer) {
     Options& options = viewer.options;
     ImGui::Checkbox("wireframe", &options.look.wireframe);
@@ -354,7 +365,10 @@ void show_panel(Viewer& viewer, float scale) {
             part(name.c_str(), b == 0, [&] { show_body(viewer, b); });
             ImGui::PopID();
         }
-        part("surroundings", false, [&] { show_surroundings(viewer); });
+        part("surroundings", false, [&] {
+            show_surroundings(viewer);
+            show_ground(viewer);
+        });
         part("look", false, [&] {
             show_look(viewer);
             show_comparison(viewer);

@@ -401,6 +401,17 @@ bool names_source(const Change& change) {
            std::ranges::count(sources, words[2]) > 0;
 }
 
+// "collider.3={…}" where there are two: a third.
+void add_one(toml::array& tables, const std::string& key, const Change& change, const Source& source) {
+    const toml::table value = parse_value(key, change.substr(change.find('=') + 1));
+    const toml::table* one = value.get_as<toml::table>(key);
+    if (key != std::to_string(tables.size() + 1) || !one)
+        source.fail(
+            0, "no such one",
+            fmt::format("name a key of one of them, or write {}={{ … }} to add one", tables.size() + 1));
+    tables.push_back(*one);
+}
+
 void apply(toml::table& root, const Change& change) {
     const Source source{"--set " + change};
     const auto equals = change.find('=');
@@ -414,11 +425,15 @@ void apply(toml::table& root, const Change& change) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         toml::node* node = table->get(words[i]);
         if (toml::array* tables = node ? node->as_array() : nullptr) {
-            if (i + 1 == words.size()) source.fail(0, "no name after " + words[i], "name one of them");
+            if (i + 1 == words.size()) return add_one(*tables, key, change, source);
             table = find_named(*tables, words[++i]);
             if (!table)
                 source.fail(0, "no " + words[i - 1] + " named " + words[i], "use a name from the scene");
         } else {
+            if (!node && key == "1" && i + 1 == words.size()) {
+                toml::array& first = *table->insert(words[i], toml::array{}).first->second.as_array();
+                return add_one(first, key, change, source);
+            }
             if (!node) node = &table->insert(words[i], toml::table{}).first->second;
             table = node->as_table();
             if (!table) source.fail(0, "\"" + words[i] + "\" is not a table", "name a key of the scene");

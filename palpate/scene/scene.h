@@ -181,8 +181,9 @@ struct Scene {
     std::vector<ToolRecipe> tools;
 };
 
-/// A change from outside the file: `body.brain.nodes=5000`. One that names another source for a body
-/// (volume, surface, dims, cloth) takes away what was said of the old one: its file, iso, units and maps.
+/// A change from outside the file: `body.brain.nodes=5000`. `collider.3={ plane = {} }` adds a third of two.
+/// One that names another source for a body (volume, surface, dims, cloth) takes away what was said of the
+/// old one: its file, iso, units and maps.
 using Change = std::string;
 
 /// A scene before it is read, so that it can be changed, read again and saved.

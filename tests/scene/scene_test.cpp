@@ -429,6 +429,20 @@ touch = { stiffness = 250, damping = 0.5, friction = 0.1, width = 0.004, yield =
                  {"no body", "skin"});
 }
 
+TEST(Scene, ChangesAddOneToAList) {
+    const Scene scene = parse(small, {"collider.1={plane={offset=-0.1}}", "collider.1.friction=0.5",
+                                      "collider.2={sphere={centre=[0,1,0],radius=0.2}}"});
+    ASSERT_EQ(scene.colliders.size(), 2u);
+    EXPECT_EQ(scene.colliders[0].collider.friction, 0.5f);
+    EXPECT_EQ(std::get<Sphere>(scene.colliders[1].collider.shape).radius, 0.2f);
+    EXPECT_EQ(
+        parse(small, {"body.2={name=\"b\",dims=[3,3,3],spacing=0.01,stiffness=9,mass=1}"}).bodies.size(), 2u);
+    expect_words(refusal(small, {"collider.2={plane={}}"}), {"collider"});
+    expect_words(refusal(small, {"collider.1=5"}), {"1={"});
+    expect_words(refusal(small, {"body.3={dims=[3,3,3]}"}), {"2={"});
+    expect_words(refusal(small, {"body.cube=7"}), {"2={"});
+}
+
 TEST(Scene, ChangesFromTheCommandLine) {
     EXPECT_EQ(parse(small, {"body.cube.spacing=0.02"}).bodies[0].spacing, 0.02f);
     EXPECT_EQ(parse(small, {"body.1.dims=[2, 3, 4]"}).bodies[0].dims, ivec3(2, 3, 4));
