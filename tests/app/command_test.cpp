@@ -126,7 +126,8 @@ TEST(Command, ScenesThatDoNotFit) {
     write_text(
         scratch / "bad.toml",
         "[[body]]\nname = \"a\"\nvolume = \"missing.nii\"\niso = 1\nyoungs_modulus = 1\ndensity = 1\n");
-    expect_one_line(palpate("run --headless " + (scratch / "bad.toml").string()), {"missing.nii", "PALPATE_DATA"});
+    expect_one_line(palpate("run --headless " + (scratch / "bad.toml").string()),
+                    {"missing.nii", "PALPATE_DATA"});
     write_text(scratch / "bad.toml", "[[body]]\nname = \"a\"\nnods = 3\n");
     expect_one_line(palpate("run --headless " + (scratch / "bad.toml").string()),
                     {"bad.toml", "line 3", "nods", "nodes"});

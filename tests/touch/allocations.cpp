@@ -8,7 +8,8 @@ namespace {
 
 thread_local std::size_t count = 0;
 
-// The other forms of new and delete come down to those below; arrays have theirs, since a sanitizer brings its own.
+// The other forms of new and delete come down to those below; arrays have theirs, since a sanitizer brings
+// its own.
 void* allocate(std::size_t size, std::size_t alignment) {
     ++count;
     alignment = std::max(alignment, sizeof(void*));
