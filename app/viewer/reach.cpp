@@ -201,6 +201,7 @@ void Viewer::make_feeling_hand() {
     if (!wanted && !feeling_) return;
     feeling_.reset();
     mouse_ = nullptr;
+    denting_ = false;  // a new one begins before the surface, not in it
     if (!wanted) return;
     attempt([&] {
         DeviceSettings settings{.path = {}, .mouse = {.camera = camera(), .size = view_size()}, .log = {}};

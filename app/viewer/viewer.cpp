@@ -226,8 +226,10 @@ void Viewer::step_once() {
 void Viewer::advance(int frames) {
     take_import();
     if (!experiment_) return;
-    std::erase_if(holds_, [&](const Hold& hold) { return !hold.fits(*experiment_); });
-    if (active_ && *active_ >= holds_.size()) active_.reset(), drag_ = Drag::none;
+    if (std::erase_if(holds_, [&](const Hold& hold) { return !hold.fits(*experiment_); }) > 0) {
+        active_.reset();  // whichever it was
+        drag_ = Drag::none;
+    }
     follow_compared();
     for (int f = 0; f < frames && !options.paused && (replay_ || experiment_->trouble().empty()); ++f)
         one_frame();
