@@ -198,14 +198,13 @@ void label_views(const Viewer& viewer, float scale) {
         return std::string(backend ? name_of(one.models().simulation.backend)
                                    : name_of(one.scene().bodies.front().mapping));
     };
+    constexpr ImU32 dark = IM_COL32(20, 22, 26, 255);
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const float middle = float(viewer.left() + viewer.view_size().x),
-                bottom = float(viewer.size().y) - 40 * scale;
+    const float middle = float(viewer.left() + viewer.view_size().x), top = 52 * scale;
     list.AddLine({middle, 0}, {middle, float(viewer.size().y)}, IM_COL32(0, 0, 0, 200), 2 * scale);
     const std::string left = name(*viewer.experiment()), right = name(*viewer.beside());
-    list.AddText({middle - ImGui::CalcTextSize(left.c_str()).x - 12 * scale, bottom}, IM_COL32_WHITE,
-                 left.c_str());
-    list.AddText({middle + 12 * scale, bottom}, IM_COL32_WHITE, right.c_str());
+    list.AddText({middle - ImGui::CalcTextSize(left.c_str()).x - 12 * scale, top}, dark, left.c_str());
+    list.AddText({middle + 12 * scale, top}, dark, right.c_str());
 }
 
 }  // namespace
