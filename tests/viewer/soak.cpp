@@ -10,6 +10,9 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 
 #include <cstdio>
 #include <fstream>
@@ -185,6 +188,9 @@ int run(double minutes, unsigned seed) {
         std::fflush(stdout);
     }
     std::filesystem::remove_all(folder);
+#ifdef __SANITIZE_ADDRESS__
+    __lsan_do_leak_check();  // here, while the driver is loaded, so that what it keeps bears its name
+#endif
     fmt::print("{} inputs in {:.1f} minutes; memory: {:.0f} MB at most until the middle, {:.0f} MB after\n",
                acts, minutes, warm, most);
     return most > 1.25 * warm + 20 ? 1 : 0;
