@@ -120,8 +120,8 @@ void show_message(const Viewer& viewer, float scale) {
 }
 
 // The first thing to do, until it is done.
-void show_hint(const Viewer& viewer, bool touched, float scale) {
-    if (touched || viewer.importing()) return;
+void show_hint(const Viewer& viewer, float scale) {
+    if (viewer.touched() || viewer.importing()) return;
     over_picture(viewer, 14 * scale, 0);
     ImGui::Begin("hint", nullptr, bare | ImGuiWindowFlags_NoInputs);
     ImGui::Text("Drag the surface with the left button.  The right button turns, the wheel zooms.");
@@ -242,7 +242,7 @@ void Gui::draw(Viewer& viewer) {
         draw_tip(viewer, scale_);
         label_views(viewer, scale_);
         if (shows_panel) show_panel(viewer, scale_);
-        show_hint(viewer, viewer.touched(), scale_);
+        show_hint(viewer, scale_);
     }
     if (viewer.importing()) show_import(viewer);
     if (shows_help) show_help_window(shows_help);

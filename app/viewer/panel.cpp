@@ -246,7 +246,7 @@ void show_look(Viewer& viewer) {
     static constexpr const char* cares[] = {"automatic", "draft", "full"};
     int care = int(options.care);
     if (ImGui::Combo("quality", &care, cares, 3)) options.care = Care(care);
-    about("automatic: a draft while things move, where the CPU has to draw");
+    about("automatic: a draft until it is paused, where the CPU has to draw");
     ImGui::Checkbox("stereo, side by side", &options.stereo);
 }
 

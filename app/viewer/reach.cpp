@@ -194,9 +194,11 @@ void Viewer::make_feeling_hand() {
     const bool by_device =
         options.device != DeviceKind::mouse && options.mode != Mode::pin && !options.device_file.empty();
     const bool wanted = experiment_ && (by_mouse || by_device);
-    const bool fits = feeling_ && feeling_device_ == options.device && feeling_file_ == options.device_file &&
-                      feeling_tip_ == options.tip && feeling_shapes_ == experiment_->shapes() &&
-                      feeling_feels_ == feels_of(experiment_->scene());
+    HandSettings of;
+    if (wanted)
+        of = {options.device, options.device_file, options.tip, feels_of(experiment_->scene()),
+              experiment_->shapes()};
+    const bool fits = feeling_ && feeling_of_ == of;
     if (wanted && fits) return;
     if (!wanted && !feeling_) return;
     feeling_.reset();
@@ -214,19 +216,15 @@ void Viewer::make_feeling_hand() {
             mouse_ = static_cast<Mouse*>(device.get());
             start = follow_pointer();  // so that it begins there and does not come from elsewhere
         }
-        feeling_ = std::make_unique<FeelingHand>(std::move(device), feels_of(experiment_->scene()),
-                                                 options.tip, start, experiment_->play().skins());
+        feeling_ = std::make_unique<FeelingHand>(std::move(device), of.feels, of.tip, start,
+                                                 experiment_->play().skins());
     });
     if (!feeling_) {  // and it is said why
         mouse_ = nullptr;
         options.device_file.clear();
         if (by_mouse) options.mode = Mode::pull;
     }
-    feeling_device_ = options.device;
-    feeling_file_ = options.device_file;
-    feeling_tip_ = options.tip;
-    feeling_feels_ = feels_of(experiment_->scene());
-    feeling_shapes_ = experiment_->shapes();
+    feeling_of_ = std::move(of);
     looked_ = view_size();
 }
 

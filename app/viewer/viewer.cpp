@@ -360,29 +360,26 @@ Traces Viewer::traces() const {
     return traces;
 }
 
-Quality Viewer::quality() {
+Quality Viewer::quality() const {
     if (film_ || options.care == Care::full) return {};
     const bool hurry = context_.software() && now() - moved_ < calm;
     return options.care == Care::draft || hurry ? draft_quality : Quality{};
 }
 
 // Whether the last picture is still right: nothing moves, and it is to look the same.
-bool Viewer::is_drawn() const {
-    return options.paused && drawn_ > moved_ && !feeling_ && !options.stereo && !film_ &&
-           drawn_look_ == options.look && drawn_size_ == view_size() && drawn_quality_ == quality_;
+bool Viewer::is_drawn(const Drawing& as) const {
+    return options.paused && drawn_ > moved_ && !feeling_ && !options.stereo && !film_ && drawn_as_ == as;
 }
 
 void Viewer::draw() {
     if (!experiment_) return;
     const double start = now();
     const int shown = shapes_shown_;
-    quality_ = quality();
-    if (!is_drawn()) {
-        draw_views();
+    const Drawing as{options.look, view_size(), quality()};
+    if (!is_drawn(as)) {
+        draw_views(as.quality);
         drawn_ = start;
-        drawn_look_ = options.look;
-        drawn_size_ = view_size();
-        drawn_quality_ = quality_;
+        drawn_as_ = as;
     }
     view_.show({left_, 0});
     if (beside_) other_view_.show({left_ + view_size().x, 0});
@@ -392,11 +389,11 @@ void Viewer::draw() {
 }
 
 // Stereo shows the left view's renderer twice; the other picture goes beside it at once.
-void Viewer::draw_views() {
+void Viewer::draw_views(const Quality& quality) {
     shapes_shown_ = experiment_->shapes();
     const Traces traces = this->traces();
     view_.resize(view_size());
-    view_.set(quality_);
+    view_.set(quality);
     if (options.stereo && !beside_) {
         view_.draw(*experiment_, eye_of(camera(), 1), options.look, traces);
         view_.show({left_ + view_size().x, 0});
@@ -406,15 +403,14 @@ void Viewer::draw_views() {
     view_.draw(*experiment_, camera(), options.look, traces);
     if (!beside_) return;
     other_view_.resize(view_size());
-    other_view_.set(quality_);
+    other_view_.set(quality);
     other_view_.draw(*beside_, camera(), options.look, traces);
 }
 
 Image Viewer::image() {
-    quality_ = {};
     drawn_ = 0;  // what the views hold then is not what the window shows
     if (!experiment_) return {};
-    draw_views();
+    draw_views({});
     Image left = view_.image();
     if (beside_) return beside_each_other(left, other_view_.image());
     if (!options.stereo) return left;

@@ -46,7 +46,7 @@ struct Compared {
 
 /// How well pictures are drawn.
 enum class Care {
-    automatic,  // as a draft while something moves and the CPU has to draw; else in full
+    automatic,  // as a draft until it is paused, where the CPU has to draw; else in full
     draft,
     full
 };
@@ -163,6 +163,20 @@ class Viewer {
 
  private:
     enum class Drag { none, turn, pan, hold };
+    struct HandSettings {
+        DeviceKind device = DeviceKind::mouse;
+        std::string file;
+        float tip = 0;  // m
+        std::vector<Feel> feels = {};
+        int shapes = 0;  // of the experiment
+        bool operator==(const HandSettings&) const = default;
+    };
+    struct Drawing {
+        Look3d look;
+        ivec2 size = ivec2(0);
+        Quality quality;
+        bool operator==(const Drawing&) const = default;
+    };
 
     void begin(Prepared prepared);
     void say(const std::string& text, bool bad = false);
@@ -182,15 +196,15 @@ class Viewer {
     void live_frame();
     void add_film_frame();
     Traces traces() const;
-    Quality quality();
+    Quality quality() const;
     bool room_for(const Hold& hold) const;
     std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& ending) const;
     void let_go();
     void alter(const std::function<void()>& how, const std::string& said = {});
     void finish_film();
-    bool is_drawn() const;
+    bool is_drawn(const Drawing& as) const;
     void measure(double seconds);
-    void draw_views();
+    void draw_views(const Quality& quality);
 
     const gl::Context& context_;
     ivec2 size_;
@@ -212,12 +226,8 @@ class Viewer {
     std::optional<Hold> device_hold_;    // of a device that is no mouse
     float depth_ = 0;                    // m from the eye, of what the pointer holds
     std::unique_ptr<FeelingHand> feeling_;
-    Mouse* mouse_ = nullptr;  // feeling_'s, if that is its device
-    DeviceKind feeling_device_ = DeviceKind::mouse;
-    std::string feeling_file_;
-    float feeling_tip_ = 0;
-    std::vector<Feel> feeling_feels_;
-    int feeling_shapes_ = 0;
+    Mouse* mouse_ = nullptr;   // feeling_'s, if that is its device
+    HandSettings feeling_of_;  // what feeling_ was made of
     ivec2 looked_ = ivec2(0);  // the size of the picture that mouse_ knows
     bool denting_ = false, touched_ = false;
     float push_ = 0;              // m, how deep the pointer dents
@@ -230,11 +240,8 @@ class Viewer {
     long frames_ = 0;   // since it was opened
     double moved_ = 0;  // s, when something last moved
     int shapes_shown_ = -1;
-    Quality quality_;
-    double drawn_ = 0;  // s, when the picture was last drawn, with
-    Look3d drawn_look_;
-    ivec2 drawn_size_ = ivec2(0);
-    Quality drawn_quality_;
+    double drawn_ = 0;  // s, when the picture was last drawn,
+    Drawing drawn_as_;  // and how
     Readings readings_;
     double simulated_before_ = 0, mapped_before_ = 0, measured_ = 0, paced_ = 0;
 };

@@ -140,29 +140,27 @@ Experiment::Experiment(Prepared prepared, const gl::Context* context, const Expe
       history_{prepared.changes},
       shapes_(number_of_new_shapes()),
       first_changes_(prepared.changes) {
-    Made made{.changes = prepared.changes,
-              .scene = std::make_unique<Scene>(std::move(prepared.scene)),
-              .models = std::make_unique<Models>(std::move(prepared.models)),
-              .report = std::make_unique<Report>(),
-              .play = nullptr};
-    made.scene->simulation.force = made.models->simulation.force = true;
-    expect_hands(*made.models);
-    std::vector<double> known;
-    if (other) known = known_frequencies(*made.models, *other->models_, *other->play_);
-    made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_, known);
-    take(std::move(made));
+    take(put_together(prepared.changes, std::move(prepared.scene), std::move(prepared.models), other));
 }
 
 Experiment::Made Experiment::make(const std::vector<Change>& changes) const {
+    Scene scene = parse_scene(source_, changes);
+    Models models = rebuild(scene, *scene_, *models_);
+    return put_together(changes, std::move(scene), std::move(models), this);
+}
+
+// `other`: knows frequencies of bodies, perhaps of the same.
+Experiment::Made Experiment::put_together(const std::vector<Change>& changes, Scene scene, Models models,
+                                          const Experiment* other) const {
+    scene.simulation.force = models.simulation.force = true;
+    expect_hands(models);
     Made made{.changes = changes,
-              .scene = std::make_unique<Scene>(parse_scene(source_, changes)),
-              .models = nullptr,
+              .scene = std::make_unique<Scene>(std::move(scene)),
+              .models = std::make_unique<Models>(std::move(models)),
               .report = std::make_unique<Report>(),
               .play = nullptr};
-    made.scene->simulation.force = true;
-    made.models = std::make_unique<Models>(rebuild(*made.scene, *scene_, *models_));
-    expect_hands(*made.models);
-    const std::vector<double> known = known_frequencies(*made.models, *models_, *play_);
+    std::vector<double> known;
+    if (other) known = known_frequencies(*made.models, *other->models_, *other->play_);
     made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_, known);
     return made;
 }
@@ -229,12 +227,17 @@ std::unique_ptr<Experiment> Experiment::beside(const std::vector<Change>& more) 
 // ---- changes ----
 
 void Experiment::change(const std::vector<Change>& changes, bool again) {
-    std::vector<Change> all = with(this->changes(), changes);
+    const std::vector<Change> all = with(this->changes(), changes);
     set(all);
-    const bool replaces = again && at_ > 0;
-    history_.resize(at_ + (replaces ? 0 : 1));
-    history_.push_back(std::move(all));
-    at_ = history_.size() - 1;
+    if (again && at_ > 0) --at_;
+    add_to_history(all);
+}
+
+// What was undone is gone.
+void Experiment::add_to_history(const std::vector<Change>& changes) {
+    history_.resize(at_ + 1);
+    history_.push_back(changes);
+    ++at_;
 }
 
 void Experiment::undo() {
@@ -270,11 +273,7 @@ void Experiment::return_to_good() {
     take(std::move(made));
     record({recorded_, ReturnToGood{}});
     frame_ = good.frame;
-    if (good.changes != changes()) {
-        history_.resize(at_ + 1);
-        history_.push_back(good.changes);
-        ++at_;
-    }
+    if (good.changes != changes()) add_to_history(good.changes);
     good_ = {good};
 }
 
@@ -295,6 +294,8 @@ void Experiment::pin(std::size_t body, const std::vector<int>& nodes, bool fast)
 bool Experiment::is_pinned(std::size_t body, int node) const {
     return !(models_->models[body].body.inverse_mass[std::size_t(node)] > 0);
 }
+
+double Experiment::time() const { return double(frame_) * frame_seconds; }
 
 double Experiment::stable_step(std::size_t body) const {
     const Body& of = models_->models[body].body;
@@ -354,9 +355,7 @@ bool Experiment::replay(const Recording& recording) {
             hands = *some;
         } else if (const auto* set_to = std::get_if<SetChanges>(&what)) {
             set(set_to->changes);
-            history_.resize(at_ + 1);
-            history_.push_back(set_to->changes);
-            ++at_;
+            add_to_history(set_to->changes);
         } else {
             return_to_good();
         }

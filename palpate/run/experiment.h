@@ -85,8 +85,8 @@ class Experiment {
     const Models& models() const { return *models_; }
     const Play& play() const { return *play_; }
     const Report& report() const { return *report_; }
-    double time() const { return double(frame_) * (1.0 / 60); }  // s
-    Energy energy() const;                                       // of all bodies
+    double time() const;    // s
+    Energy energy() const;  // of all bodies
 
     /// The longest step that keeps a body's small motions bounded, untouched, s.
     double stable_step(std::size_t body) const;
@@ -116,6 +116,9 @@ class Experiment {
     struct Made;
     Experiment(Prepared prepared, const gl::Context* context, const Experiment* other);
     Made make(const std::vector<Change>& changes) const;
+    Made put_together(const std::vector<Change>& changes, Scene scene, Models models,
+                      const Experiment* other) const;
+    void add_to_history(const std::vector<Change>& changes);
     bool fits(const Made& made) const;
     void take(Made made);
     void carry_over(Made& made);

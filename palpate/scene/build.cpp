@@ -209,20 +209,6 @@ BodyRecipe without_looks(BodyRecipe recipe) {
     return recipe;
 }
 
-// Only what its surface is made of.
-BodyRecipe without_body(BodyRecipe recipe) {
-    const BodyRecipe plain;
-    recipe = without_looks(std::move(recipe));
-    recipe.nodes = plain.nodes;
-    recipe.spacing = plain.spacing;
-    recipe.material = plain.material;
-    recipe.springs = plain.springs;
-    recipe.pin = plain.pin;
-    recipe.regions = plain.regions;
-    recipe.mapping = plain.mapping;
-    return recipe;
-}
-
 // All but what its nodes are made of, which of them are held, and how the surface hangs on them.
 BodyRecipe without_stuff(BodyRecipe recipe) {
     const BodyRecipe plain;
@@ -231,6 +217,16 @@ BodyRecipe without_stuff(BodyRecipe recipe) {
     recipe.pin = plain.pin;
     recipe.regions = plain.regions;
     recipe.mapping = plain.mapping;
+    return recipe;
+}
+
+// Only what its surface is made of.
+BodyRecipe without_body(BodyRecipe recipe) {
+    const BodyRecipe plain;
+    recipe = without_stuff(std::move(recipe));
+    recipe.nodes = plain.nodes;
+    recipe.spacing = plain.spacing;
+    recipe.springs = plain.springs;
     return recipe;
 }
 
