@@ -42,6 +42,7 @@
 #include "palpate/mesh/sequence.h"
 #include "palpate/mesh/solid.h"
 #include "palpate/mesh/soundness.h"
+#include "palpate/mesh/thinned.h"
 #include "palpate/mesh/tree.h"
 #include "palpate/mesh/triangle.h"
 #include "palpate/mesh/volume.h"

@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
+#include "palpate/mesh/thinned.h"
 #include "palpate/render/culling.h"
 #include "palpate/render/gpu_dents.h"
 #include "palpate/render/gpu_embedding.h"
@@ -12,7 +13,6 @@
 #include "palpate/render/reach.h"
 #include "palpate/render/shadow_map.h"
 #include "palpate/render/target.h"
-#include "palpate/render/thinned.h"
 #include "palpate/render/unit_ball.h"
 #include "palpate/render/view.h"
 

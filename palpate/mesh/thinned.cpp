@@ -1,10 +1,10 @@
-#include "palpate/render/thinned.h"
+#include "palpate/mesh/thinned.h"
 
 #include <meshoptimizer.h>
 
 namespace palpate {
 
-std::vector<uvec3> thinned(const Mesh& mesh, std::size_t triangles) {
+std::vector<uvec3> simplified(const Mesh& mesh, std::size_t triangles) {
     const std::size_t before = mesh.triangles.size();
     if (before <= triangles) return mesh.triangles;
     // The number decides, so any error is allowed: 1 is as much as the whole mesh is wide.
@@ -13,8 +13,13 @@ std::vector<uvec3> thinned(const Mesh& mesh, std::size_t triangles) {
         meshopt_simplify(&kept[0].x, &mesh.triangles[0].x, 3 * before, &mesh.positions[0].x,
                          mesh.positions.size(), sizeof(vec3), 3 * triangles, 1.0f, 0, nullptr);
     kept.resize(corners / 3);
-    // Neighbours one after the other, so that a vertex that several of them share is shaded once.
-    meshopt_optimizeVertexCache(&kept[0].x, &kept[0].x, corners, mesh.positions.size());
+    return kept;
+}
+
+std::vector<uvec3> thinned(const Mesh& mesh, std::size_t triangles) {
+    std::vector<uvec3> kept = simplified(mesh, triangles);
+    if (!kept.empty() && kept.size() < mesh.triangles.size())
+        meshopt_optimizeVertexCache(&kept[0].x, &kept[0].x, 3 * kept.size(), mesh.positions.size());
     return kept;
 }
 
