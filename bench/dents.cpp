@@ -23,7 +23,7 @@ struct Arc {
 
 // Where the arc's places are when they have moved so far along their normals; and by central differences its
 // normals.
-struct Moved {
+struct DentedArc {
     Arc arc;
     double height;  // m, in the middle: below 0 a dent
 
@@ -44,7 +44,7 @@ dvec3 normal_of_2007(const Arc& arc, double along, double depth, bool negative_e
     const double d = glm::length(place), square = double(width) * width;
     const double exponent = (negative_exponent ? -0.5 : 0.5) * d * d / square;
     const double angle = std::atan(depth * d / square * std::exp(exponent));  // of -G'
-    const dvec3 to_contact = -Moved{arc, depth}.place(along);
+    const dvec3 to_contact = -DentedArc{arc, depth}.place(along);
     dvec3 axis = glm::cross(normal, to_contact);
     if (unit_axis) axis = glm::normalize(axis);
     const dvec3 kept = axis * glm::dot(normal, axis);
@@ -60,7 +60,7 @@ double degrees_between(dvec3 a, dvec3 b) {
 DentNormals dent_normals(double width_over_radius, double depth_over_width) {
     const Arc arc{width_over_radius / width};
     const double depth = depth_over_width * width;
-    const Moved dent{arc, -depth}, bump{arc, depth};
+    const DentedArc dent{arc, -depth}, bump{arc, depth};
     const Dent one{vec3(0), float(depth), width};
     DentNormals worst;
     auto raise = [](double& most, double value) {

@@ -70,8 +70,8 @@ float Recent::most() const {
 Viewer::Viewer(const gl::Context& context, ivec2 size)
     : context_(context),
       size_(glm::max(size, ivec2(1))),
-      view_(context, size_),
-      other_view_(context, ivec2(16)) {}
+      pane_(context, size_),
+      other_pane_(context, ivec2(16)) {}
 
 Viewer::~Viewer() {
     attempt([&] { finish_film(); });
@@ -381,8 +381,8 @@ void Viewer::draw() {
         drawn_ = start;
         drawn_as_ = as;
     }
-    view_.show({left_, 0});
-    if (beside_) other_view_.show({left_ + view_size().x, 0});
+    pane_.show({left_, 0});
+    if (beside_) other_pane_.show({left_ + view_size().x, 0});
     context_.finish();
     // Not the first one of a mesh, which finds out how deep its grooves are.
     if (shown == shapes_shown_ && !options.paused) readings_.draw.add(float(1000 * (now() - start)));
@@ -392,30 +392,30 @@ void Viewer::draw() {
 void Viewer::draw_views(const Quality& quality) {
     shapes_shown_ = experiment_->shapes();
     const Traces traces = this->traces();
-    view_.resize(view_size());
-    view_.set(quality);
+    pane_.resize(view_size());
+    pane_.set(quality);
     if (options.stereo && !beside_) {
-        view_.draw(*experiment_, eye_of(camera(), 1), options.look, traces);
-        view_.show({left_ + view_size().x, 0});
-        view_.draw(*experiment_, eye_of(camera(), -1), options.look, traces);
+        pane_.draw(*experiment_, eye_of(camera(), 1), options.look, traces);
+        pane_.show({left_ + view_size().x, 0});
+        pane_.draw(*experiment_, eye_of(camera(), -1), options.look, traces);
         return;
     }
-    view_.draw(*experiment_, camera(), options.look, traces);
+    pane_.draw(*experiment_, camera(), options.look, traces);
     if (!beside_) return;
-    other_view_.resize(view_size());
-    other_view_.set(quality);
-    other_view_.draw(*beside_, camera(), options.look, traces);
+    other_pane_.resize(view_size());
+    other_pane_.set(quality);
+    other_pane_.draw(*beside_, camera(), options.look, traces);
 }
 
 Image Viewer::image() {
     drawn_ = 0;  // what the views hold then is not what the window shows
     if (!experiment_) return {};
     draw_views({});
-    Image left = view_.image();
-    if (beside_) return beside_each_other(left, other_view_.image());
+    Image left = pane_.image();
+    if (beside_) return beside_each_other(left, other_pane_.image());
     if (!options.stereo) return left;
-    view_.draw(*experiment_, eye_of(camera(), 1), options.look, traces());
-    return beside_each_other(left, view_.image());
+    pane_.draw(*experiment_, eye_of(camera(), 1), options.look, traces());
+    return beside_each_other(left, pane_.image());
 }
 
 // ---- files ----

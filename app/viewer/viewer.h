@@ -2,7 +2,7 @@
 #include "app/viewer/hand.h"
 #include "app/viewer/import.h"
 #include "app/viewer/orbit.h"
-#include "app/viewer/view.h"
+#include "app/viewer/pane.h"
 #include "palpate/run/experiment.h"
 #include "palpate/run/film.h"
 
@@ -209,7 +209,7 @@ class Viewer {
     const gl::Context& context_;
     ivec2 size_;
     int left_ = 0;
-    View view_, other_view_;
+    Pane pane_, other_pane_;
     std::unique_ptr<Import> import_;
     std::unique_ptr<Experiment> experiment_, beside_;
     Compared compared_;  // what beside_ is

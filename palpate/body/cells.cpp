@@ -76,9 +76,9 @@ int amount(const Samples& cell) {
 const std::array<Set, 27> within_half = points_towards_places(2), beside = points_towards_places(1);
 
 // Which cells hang together, by faces, edges or corners; grows as cells are filled.
-class Parts {
+class FilledParts {
  public:
-    explicit Parts(const Cells& cells) : cells_(cells), parent_(cells.filled.size()) {
+    explicit FilledParts(const Cells& cells) : cells_(cells), parent_(cells.filled.size()) {
         std::iota(parent_.begin(), parent_.end(), 0);
         for_each_place(cells.dims, [&](ivec3 c) {
             if (cells.at(c)) join(c);
@@ -117,7 +117,7 @@ class Filling {
                          [&](ivec3 a, ivec3 b) { return amount(at(a)) > amount(at(b)); });
         for (ivec3 c : doubtful)
             if (!covered(c)) fill(c);
-        Parts parts(cells_);
+        FilledParts parts(cells_);
         for (ivec3 c : doubtful)
             if (!cells_.at(c)) keep_together(c, parts);
         return std::move(cells_);
@@ -153,7 +153,7 @@ class Filling {
 
     // Where points of this empty cell go on in a neighbour, but what stands for the two does not hang
     // together, both cells are filled.
-    void keep_together(ivec3 c, Parts& parts) {
+    void keep_together(ivec3 c, FilledParts& parts) {
         for (Set rest = touched(at(c)); rest && !cells_.at(c);) {
             const Set group = reach(rest, rest & -rest);
             rest &= ~group;

@@ -162,12 +162,12 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
 
 // A box of cells around a mesh, with an empty cell on every side. Its grid starts at the mesh's lowest
 // corner, so that a box of whole cells is filled exactly.
-struct Frame {
+struct CellBox {
     vec3 origin;
     ivec3 dims;
 };
 
-Frame frame_around(const Bounds& box, float spacing) {
+CellBox frame_around(const Bounds& box, float spacing) {
     const dvec3 cells = glm::ceil(dvec3(box.size()) / double(spacing) - 1e-3) + 2.0;
     if (!(cells.x * cells.y * cells.z <= most_cells))
         throw Error(
@@ -178,11 +178,11 @@ Frame frame_around(const Bounds& box, float spacing) {
 
 // Cells with their samples, found by place.
 struct Sampled {
-    Frame frame;
+    CellBox frame;
     float fine;  // m, between points
     std::vector<Samples> cells;
 
-    Sampled(const Frame& box, float spacing)
+    Sampled(const CellBox& box, float spacing)
         : frame(box), fine(spacing / samples), cells(std::size_t(box.dims.x) * box.dims.y * box.dims.z) {}
 
     // The word and the bit of a point, by its place among all points.

@@ -22,9 +22,9 @@ constexpr int wide = Block::DIM;
 
 // The volume as OpenVDB wants it: inside is what lies below zero, and all beyond the volume is as far outside
 // as its lowest voxel. Scaled to within -1 and 1, so that no difference of two is too large for a float.
-class Scaled {
+class ScaledVolume {
  public:
-    Scaled(const Volume& volume, float iso, float lowest, float highest)
+    ScaledVolume(const Volume& volume, float iso, float lowest, float highest)
         : volume_(volume),
           iso_(iso),
           scale_(1 / std::max(double(iso) - lowest, double(highest) - iso)),
@@ -46,7 +46,7 @@ class Scaled {
 };
 
 // Whether a block and the voxels right around it are all on one side, like the first of them.
-bool on_one_side(const Scaled& values, ivec3 low) {
+bool on_one_side(const ScaledVolume& values, ivec3 low) {
     const bool side = values.inside(low.x, low.y, low.z);
     for (int z = low.z - 1; z <= low.z + wide; ++z)
         for (int y = low.y - 1; y <= low.y + wide; ++y)
@@ -57,7 +57,7 @@ bool on_one_side(const Scaled& values, ivec3 low) {
 
 // Only blocks that the surface touches hold values; of the others OpenVDB need know no more than the side. So
 // the memory goes with the surface.
-FloatGrid::Ptr inside_below_zero(const Scaled& values, ivec3 dims) {
+FloatGrid::Ptr inside_below_zero(const ScaledVolume& values, ivec3 dims) {
     auto grid = FloatGrid::create(values.outside());
     auto& tree = grid->tree();
     for (int z = 0; z < dims.z; z += wide)

@@ -8,9 +8,9 @@ namespace palpate {
 namespace {
 
 // By how much the direction to a face turns about an edge, from any one fixed direction: -pi to pi.
-class Turn {
+class TurnAboutEdge {
  public:
-    explicit Turn(dvec3 axis) : axis_(axis) {
+    explicit TurnAboutEdge(dvec3 axis) : axis_(axis) {
         const dvec3 a = glm::abs(axis);  // a direction well off the axis
         const dvec3 off(a.x <= a.y && a.x <= a.z, a.y < a.x && a.y <= a.z, a.z < a.x && a.z < a.y);
         from_ = glm::cross(off, axis);
@@ -27,7 +27,7 @@ class Turn {
 // they were not there. Twice round, because the circle has no beginning.
 void pair_by_angle(const Mesh& mesh, Index low, std::span<const Side> sides, std::vector<Index>& twin) {
     const dvec3 foot(mesh.positions[low]);
-    const Turn turn(dvec3(mesh.positions[sides[0].other]) - foot);
+    const TurnAboutEdge turn(dvec3(mesh.positions[sides[0].other]) - foot);
     std::vector<std::pair<double, Side>> round;
     for (Side side : sides) {
         const uvec3 t = mesh.triangles[side.corner / 3];

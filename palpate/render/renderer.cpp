@@ -52,7 +52,7 @@ struct Triangles {
 };
 
 // What does not move of a mesh.
-struct Model {
+struct DrawnMesh {
     Triangles triangles;
     Triangles few;  // in their place, where not every triangle is drawn
     gl::Buffer openness, uvs;
@@ -74,7 +74,7 @@ struct Moving {
 };
 
 // How surfaces are drawn, for a picture or for a shadow map.
-struct Pass {
+struct SurfacePass {
     View view;
     std::function<const gl::Program&(const SurfacePrograms&)> begin;  // tells the program what it shall know
     bool culls;
@@ -97,8 +97,8 @@ Triangles buffered(const std::vector<uvec3>& list) {
     return {gl::Buffer(list), static_cast<GLsizei>(3 * list.size())};
 }
 
-Model model(const Mesh& mesh, gl::Buffer openness, std::size_t few = few_triangles) {
-    Model made;
+DrawnMesh model(const Mesh& mesh, gl::Buffer openness, std::size_t few = few_triangles) {
+    DrawnMesh made;
     made.triangles = buffered(mesh.triangles);
     made.few = buffered(thinned(mesh, few));
     made.openness = std::move(openness);
@@ -131,7 +131,7 @@ gl::VertexArray corners_of_surfaces() {
 }
 
 // What does not move of a model, for the vertices that `corners` describes.
-void attach(const Model& model, GLuint corners) {
+void attach(const DrawnMesh& model, GLuint corners) {
     glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
     glVertexArrayVertexBuffer(corners, uv_attribute, model.uvs.name(), 0, sizeof(vec2));
     (model.has_uvs ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(corners, uv_attribute);
@@ -257,9 +257,9 @@ struct Renderer::Parts {
     gl::VertexArray no_corners;  // for shaders that make their own
     std::vector<gl::Texture> maps;
     gl::Sampler map_sampler = sampler_of_maps();
-    std::vector<Model> models;
+    std::vector<DrawnMesh> models;
     std::vector<Moving> moving;
-    Model ball_model;
+    DrawnMesh ball_model;
     Moving ball_shape;
     gl::Buffer wire_points, wire_lines;
 
@@ -267,7 +267,7 @@ struct Renderer::Parts {
     ~Parts() { context.make_current_or_not(); }
 
     Programs& programs() { return all_programs.try_emplace(quality.shadows, quality.shadows).first->second; }
-    const Triangles& triangles(const Model& model) const {
+    const Triangles& triangles(const DrawnMesh& model) const {
         return quality.every_triangle ? model.triangles : model.few;
     }
     void draw(const Picture& picture);
@@ -276,13 +276,13 @@ struct Renderer::Parts {
     void upload(const Surface& surface, Moving& to) const;
     void cast_shadows(const Picture& picture, const Lighting& light);
     void draw_background();
-    const SurfacePrograms& programs_for(const Model& model, const Moving& shape, const Look& look);
-    void draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass);
-    void draw_balls(const std::vector<Ball>& balls, const Pass& pass);
-    void bind(const Model& model, const Moving& shape) const;
-    void set_look(const gl::Program& program, const Look& look, const Model& model,
+    const SurfacePrograms& programs_for(const DrawnMesh& model, const Moving& shape, const Look& look);
+    void draw_surfaces(const std::vector<Surface>& surfaces, const SurfacePass& pass);
+    void draw_balls(const std::vector<Ball>& balls, const SurfacePass& pass);
+    void bind(const DrawnMesh& model, const Moving& shape) const;
+    void set_look(const gl::Program& program, const Look& look, const DrawnMesh& model,
                   const Moving& shape) const;
-    void draw_triangles(const Model& model) const;
+    void draw_triangles(const DrawnMesh& model) const;
     void draw_wires(const Wires& some, const View& seen, const Extent& things);
     void draw_ground(const Ground& one, const View& seen, const Extent& things);
 };
@@ -313,7 +313,7 @@ void Renderer::Parts::draw(const Picture& picture) {
         tell(some.shown, seen, light, picture.balls.size());
         return some.shown;
     };
-    const Pass shown{seen, begin, picture.culls};
+    const SurfacePass shown{seen, begin, picture.culls};
     tell(programs().ground, seen, light, light.round.size());
 
     upload(picture.surfaces);
@@ -345,7 +345,7 @@ void Renderer::Parts::upload(const std::vector<Surface>& surfaces) {
 }
 
 void Renderer::Parts::upload(const Surface& surface, Moving& to) const {
-    const Model& model = models.at(surface.mesh);
+    const DrawnMesh& model = models.at(surface.mesh);
     to.nodes = {};
     if (to.dents.count() > 0 || !surface.dents.empty()) to.dents.set(surface.dents);
     if (surface.positions.size() == model.vertices) {
@@ -370,7 +370,7 @@ void Renderer::Parts::cast_shadows(const Picture& picture, const Lighting& light
         return some.depth;
     };
     const View from_light{light.to_clip, vec4(light.to_light, 0), vec3(0)};
-    const Pass depth{from_light, begin, picture.culls};
+    const SurfacePass depth{from_light, begin, picture.culls};
     shadow.begin();
     draw_surfaces(picture.surfaces, depth);
     draw_balls(picture.balls, depth);
@@ -387,7 +387,7 @@ void Renderer::Parts::draw_background() {
     glDepthFunc(GL_LESS);
 }
 
-const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const Moving& shape,
+const SurfacePrograms& Renderer::Parts::programs_for(const DrawnMesh& model, const Moving& shape,
                                                      const Look& look) {
     Features features{.images = look.colour_map >= 0 || look.normal_map >= 0 || look.shows_normals};
     if (shape.dents.count() > 0)
@@ -397,9 +397,9 @@ const SurfacePrograms& Renderer::Parts::programs_for(const Model& model, const M
                               features);
 }
 
-void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const Pass& pass) {
+void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const SurfacePass& pass) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const Model& model = models[surfaces[i].mesh];
+        const DrawnMesh& model = models[surfaces[i].mesh];
         const gl::Program& program = pass.begin(programs_for(model, moving[i], surfaces[i].look));
         bind(model, moving[i]);
         const bool dented = moving[i].dents.count() > 0;
@@ -423,7 +423,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
     }
 }
 
-void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pass) {
+void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const SurfacePass& pass) {
     const gl::Program& program = pass.begin(programs().placed);
     bind(ball_model, ball_shape);
     program.use();
@@ -436,7 +436,7 @@ void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const Pass& pas
     }
 }
 
-void Renderer::Parts::bind(const Model& model, const Moving& shape) const {
+void Renderer::Parts::bind(const DrawnMesh& model, const Moving& shape) const {
     const bool placed = shape.nodes.positions == 0;
     const GLuint corners = placed ? surface_corners.name() : model.embedding->vertex_array();
     glVertexArrayElementBuffer(corners, triangles(model).corners.name());
@@ -447,7 +447,7 @@ void Renderer::Parts::bind(const Model& model, const Moving& shape) const {
     glBindVertexArray(corners);
 }
 
-void Renderer::Parts::set_look(const gl::Program& program, const Look& look, const Model& model,
+void Renderer::Parts::set_look(const gl::Program& program, const Look& look, const DrawnMesh& model,
                                const Moving& shape) const {
     const bool has_tangents = shape.nodes.positions != 0 && model.embedding->has_tangents();
     const bool coloured = look.colour_map >= 0 && model.has_uvs;
@@ -465,7 +465,7 @@ void Renderer::Parts::set_look(const gl::Program& program, const Look& look, con
     if (bumpy) lay(normal_map_unit, look.normal_map);
 }
 
-void Renderer::Parts::draw_triangles(const Model& model) const {
+void Renderer::Parts::draw_triangles(const DrawnMesh& model) const {
     glDrawElements(GL_TRIANGLES, triangles(model).count, GL_UNSIGNED_INT, nullptr);
 }
 
@@ -552,7 +552,7 @@ int Renderer::add(const Mesh& mesh) {
 
 int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
     const int number = add(mesh);
-    Model& model = parts_->models.back();
+    DrawnMesh& model = parts_->models.back();
     const Clusters groups = clusters(mesh, cluster_vertices, cluster_faces);
     model.triangles = buffered(groups.triangles);
     model.embedding.emplace(embedding);
@@ -588,7 +588,7 @@ Image Renderer::image() const {
 }
 
 Culled Renderer::culled(int mesh) const {
-    const Model& model = parts_->models.at(mesh);
+    const DrawnMesh& model = parts_->models.at(mesh);
     return model.culling ? model.culling->count(parts_->context) : Culled{};
 }
 

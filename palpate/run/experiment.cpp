@@ -281,7 +281,7 @@ void Experiment::pin(std::size_t body, const std::vector<int>& nodes, bool fast)
     const std::vector<float>& inverse_mass = models_->models[body].body.inverse_mass;
     std::vector<char> held(inverse_mass.size());
     for (std::size_t i = 0; i < held.size(); ++i) held[i] = !(inverse_mass[i] > 0);
-    for (const Moved& moved : models_->moves)
+    for (const MovedNodes& moved : models_->moves)
         if (moved.body == body)
             for (int node : moved.nodes) held[std::size_t(node)] = false;  // by the motion, not by a pin
     for (int node : nodes) held[std::size_t(node)] = fast;

@@ -32,7 +32,7 @@ Report::Body describe(const Model& model) {
 }
 
 // Where the nodes of a prescribed motion shall be at a time.
-std::vector<vec3> places(const Moved& moved, const Path& path, const Body& body, double time) {
+std::vector<vec3> places(const MovedNodes& moved, const Path& path, const Body& body, double time) {
     const Pose at = pose(path, time);
     std::vector<vec3> to;
     for (int node : moved.nodes) {
@@ -254,7 +254,7 @@ Play::Acting Play::acting(double time, double seconds, const Hands& hands) {
     }
     on.pulls = hands.pulls.size();
     for (std::size_t i = 0; i < made_.moves.size(); ++i) {
-        const Moved& moved = made_.moves[i];
+        const MovedNodes& moved = made_.moves[i];
         on.places.push_back(
             places(moved, scene_.moves[i].path, made_.models[moved.body].body, time + seconds));
     }

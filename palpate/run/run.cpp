@@ -53,9 +53,9 @@ void write_surfaces(const Models& made, const std::vector<Skin>& skins, const st
 // ---- what is written on the way ----
 
 // The surfaces as they move, each in a sequence of its own.
-class Recording {
+class MeshSequences {
  public:
-    Recording(const RunSettings& settings, const Models& made, const Play& play, double duration) {
+    MeshSequences(const RunSettings& settings, const Models& made, const Play& play, double duration) {
         if (settings.sequence.empty()) return;
         if (made.models.empty())
             throw Error("no body whose motion could be recorded", settings.sequence.string(),
@@ -187,14 +187,14 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         report.renderer = show->renderer();
     }
     const double duration = longest(scene, settings, play);
-    Recording recording(settings, made, play, duration);
+    MeshSequences sequences(settings, made, play, duration);
     report.seconds.build = now() - start;
 
     RestWatch watch(settings.until_rest, scene, made);
     auto draw = [&] {
         if (show) report.pictures += show->frame_done(report.frames, play, report.seconds);
         Timed timed(report.seconds.write);
-        recording.frame_done(report.frames, report.simulated, play);
+        sequences.frame_done(report.frames, report.simulated, play);
     };
     draw();
     while (report.simulated < duration - 1e-9 && !report.rest) {
@@ -212,7 +212,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     if (settings.until_rest != Rest::none && !report.rest && !report.diverged)
         report.notes.push_back(fmt::format("not at rest after {:.4g} s", report.simulated));
     if (show) show->finish();
-    recording.finish();
+    sequences.finish();
 
     for (const Report::Body& body : report.bodies)
         if (body.inverted_cells > 0)

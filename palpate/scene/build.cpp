@@ -337,9 +337,9 @@ Still build_still(const BodyRecipe& wanted, const Scene& scene, const Earlier* e
 
 // ---- what moves ----
 
-Moved find_moved(const MoveRecipe& recipe, std::size_t number, const Scene& scene,
-                 const std::vector<Model>& models, std::vector<std::string>& notes) {
-    Moved moved;
+MovedNodes find_moved(const MoveRecipe& recipe, std::size_t number, const Scene& scene,
+                      const std::vector<Model>& models, std::vector<std::string>& notes) {
+    MovedNodes moved;
     while (scene.bodies[moved.body].name != recipe.body) ++moved.body;
     const Body& body = models[moved.body].body;
     moved.nodes = chosen(body, recipe.nodes, down(scene), fmt::format("move {}", number), "nodes.", notes);

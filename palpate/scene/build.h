@@ -24,7 +24,7 @@ struct Still {
 };
 
 /// The nodes of a prescribed motion.
-struct Moved {
+struct MovedNodes {
     std::size_t body = 0;    // its number
     std::vector<int> nodes;  // in rising order
     vec3 about = vec3(0);    // m, the point that their rotation leaves where it is
@@ -36,7 +36,7 @@ struct Models {
     std::vector<Still> stills;
     Simulation simulation;     // the scene's, with its colliders and the strength of its tools
     std::vector<vec3> pivots;  // m: a collider that moves is given about this point; one that stands, about 0
-    std::vector<Moved> moves;
+    std::vector<MovedNodes> moves;
     std::vector<std::string>
         notes;  // what the user should know: a count that was not met, a size that looks wrong
 };

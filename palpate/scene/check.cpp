@@ -15,7 +15,7 @@ namespace {
 // Fails unless something holds.
 using Require = std::function<void(bool holds, const std::string& what, const std::string& remedy)>;
 
-Require require_of(const std::string& what_of, int line, const Source& source) {
+Require require_of(const std::string& what_of, int line, const SceneSource& source) {
     return [=](bool holds, const std::string& what, const std::string& remedy) {
         if (!holds) source.fail(line, what_of + ": " + what, remedy);
     };
@@ -31,7 +31,7 @@ void check(const Choice& choice, const std::string& key, const Require& require)
             "0.15 is the lowest 15 %");
 }
 
-void check(const Region& region, const BodyRecipe& body, const Source& source) {
+void check(const Region& region, const BodyRecipe& body, const SceneSource& source) {
     const Require require = require_of("body " + body.name + ", region", region.line, source);
     check(region.choice, "", require);
     require(!region.choice.empty() || !region.labels.empty(), "it says nowhere which nodes",
@@ -116,13 +116,13 @@ void check_surface(const BodyRecipe& body, const Require& require) {
     check(body.feel, require);
 }
 
-void check_still(const BodyRecipe& surface, const Source& source) {
+void check_still(const BodyRecipe& surface, const SceneSource& source) {
     const Require require = require_of("surface " + surface.name, surface.line, source);
     require(surface.volume.empty() != surface.surface.empty(), "wants a volume or a surface", "name a file");
     check_surface(surface, require);
 }
 
-void check(const BodyRecipe& body, const Source& source) {
+void check(const BodyRecipe& body, const SceneSource& source) {
     const Require require = require_of("body " + body.name, body.line, source);
     const Material& m = body.material;
     const int sources =
@@ -184,7 +184,7 @@ void check_shape(const DistanceField& field, const Require& require) {
     require(field.spacing >= 0, "a field whose spacing is negative", "give it one in m, or none");
 }
 
-void check(ColliderRecipe& recipe, std::size_t number, const Source& source) {
+void check(ColliderRecipe& recipe, std::size_t number, const SceneSource& source) {
     const Require require = require_of(fmt::format("collider {}", number), recipe.line, source);
     std::visit([&](auto& shape) { check_shape(shape, require); }, recipe.collider.shape);
     require(std::min(recipe.collider.friction, recipe.collider.margin) >= 0, "friction or margin is negative",
@@ -200,7 +200,8 @@ std::string all_of(const std::set<std::string>& names) {
     return list;
 }
 
-void check(MoveRecipe& move, std::size_t number, const std::set<std::string>& bodies, const Source& source) {
+void check(MoveRecipe& move, std::size_t number, const std::set<std::string>& bodies,
+           const SceneSource& source) {
     const Require require = require_of(fmt::format("move {}", number), move.line, source);
     if (move.body.empty() && bodies.size() == 1) move.body = *bodies.begin();
     require(!move.body.empty(), "it says nowhere which body", "name one of " + all_of(bodies));
@@ -210,7 +211,7 @@ void check(MoveRecipe& move, std::size_t number, const std::set<std::string>& bo
     require(!move.path.empty(), "no path", "give it a file or rows of [t, x, y, z]");
 }
 
-void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const Source& source) {
+void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const SceneSource& source) {
     const Require require = require_of("tool " + tool.name, tool.line, source);
     require(tool.device == "script" || (tool.device == "hand" && tool.kind == ToolKind::dent),
             fmt::format("no device \"{}\" for a {}", tool.device, name_of(tool.kind)),
@@ -229,7 +230,7 @@ void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const So
 // ---- all of it ----
 
 // Names become parts of file names and cells of tables.
-void check_name(const std::string& name, int line, const Source& source) {
+void check_name(const std::string& name, int line, const SceneSource& source) {
     for (unsigned char c : name)
         if (c < ' ' || std::string_view("/\\,\"").find(char(c)) != std::string_view::npos)
             source.fail(line, "a name with a slash, a comma, a quote or an unprintable letter",
@@ -238,11 +239,11 @@ void check_name(const std::string& name, int line, const Source& source) {
 
 }  // namespace
 
-void Source::fail(int line, const std::string& what, const std::string& remedy) const {
+void SceneSource::fail(int line, const std::string& what, const std::string& remedy) const {
     throw Error(what, line > 0 ? fmt::format("{}, line {}", file, line) : file, remedy);
 }
 
-void check(Scene& scene, const Source& source) {
+void check(Scene& scene, const SceneSource& source) {
     if (scene.bodies.empty() && scene.surfaces.empty()) source.fail(0, "no body", "add a [[body]]");
     std::set<std::string> names;
     auto name = [&](BodyRecipe& one, const char* kind, std::size_t number) {

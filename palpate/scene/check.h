@@ -6,8 +6,8 @@
 
 namespace palpate {
 
-/// Where a value stands, for messages.
-struct Source {
+/// The text that a scene is read from, a file or what a change says: names it in messages.
+struct SceneSource {
     std::string file;
 
     /// Throws Error. A line of 0: nobody knows.
@@ -15,6 +15,6 @@ struct Source {
 };
 
 /// Gives names to what has none, lengths of 1 to normals, and throws Error where something does not fit.
-void check(Scene& scene, const Source& source);
+void check(Scene& scene, const SceneSource& source);
 
 }  // namespace palpate

@@ -17,7 +17,7 @@ namespace {
 // ---- what a scene file may hold ----
 
 // A path is the name of a file, or rows of numbers.
-void read_path_value(Reader& read, Path& path, Rows kind, const Source& source,
+void read_path_value(Reader& read, Path& path, Rows kind, const SceneSource& source,
                      const std::filesystem::path& folder) {
     const toml::node* node = read.get("path");
     if (!node) return;
@@ -151,7 +151,7 @@ void read_shape(Reader& read, Capsule& capsule) {
     read("radius", capsule.radius);
 }
 
-void read_shape(Reader& read, Box& box, const Source& source) {
+void read_shape(Reader& read, Box& box, const SceneSource& source) {
     vec3 size(0), rotate(0);
     read("centre", box.centre);
     read("half", box.half);
@@ -173,7 +173,7 @@ void read_file(Reader& read, ColliderRecipe& recipe) {
     read("move", recipe.move);
 }
 
-void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe, const Source& source) {
+void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe, const SceneSource& source) {
     std::vector<std::vector<vec3>> triangles;
     read_file(read, recipe);
     read("triangles", triangles);
@@ -191,13 +191,13 @@ void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe, const So
     }
 }
 
-void read_shape(Reader& read, DistanceField& field, ColliderRecipe& recipe, const Source& source) {
+void read_shape(Reader& read, DistanceField& field, ColliderRecipe& recipe, const SceneSource& source) {
     read_file(read, recipe);
     read("spacing", field.spacing);
     if (recipe.surface.empty()) source.fail(read.line(), "a field without a surface", "name a closed mesh");
 }
 
-void read_fields(Reader& read, ColliderRecipe& recipe, const Source& source,
+void read_fields(Reader& read, ColliderRecipe& recipe, const SceneSource& source,
                  const std::filesystem::path& folder) {
     int shapes = 0;
     auto shape = [&](const char* key, auto one, auto... more) {
@@ -227,14 +227,16 @@ void read_fields(Reader& read, ColliderRecipe& recipe, const Source& source,
 
 // ---- what moves ----
 
-void read_fields(Reader& read, MoveRecipe& move, const Source& source, const std::filesystem::path& folder) {
+void read_fields(Reader& read, MoveRecipe& move, const SceneSource& source,
+                 const std::filesystem::path& folder) {
     read("body", move.body);
     read.table("nodes", [&](Reader& inside) { read_fields(inside, move.nodes); });
     read_path_value(read, move.path, Rows::poses, source, folder);
     read("about", move.about);
 }
 
-void read_fields(Reader& read, ToolRecipe& tool, const Source& source, const std::filesystem::path& folder) {
+void read_fields(Reader& read, ToolRecipe& tool, const SceneSource& source,
+                 const std::filesystem::path& folder) {
     read("name", tool.name);
     read("kind", tool.kind);
     if (tool.kind == ToolKind::drag) tool.stiffness = Drag{}.stiffness;
@@ -264,7 +266,7 @@ void read_fields(Reader& read, ToolRecipe& tool, const Source& source, const std
 }
 
 // Wind brings air with it.
-void read_wind(Reader& read, Scene& scene, const Source& source) {
+void read_wind(Reader& read, Scene& scene, const SceneSource& source) {
     std::optional<vec3> velocity;
     read("velocity", velocity);
     read_path_value(read, scene.wind, Rows::places, source, scene.folder);
@@ -294,7 +296,7 @@ void read_look_at(Reader& read, std::variant<vec3, std::string>& look_at) {
     }
 }
 
-void read_fields(Reader& read, Scene& scene, const Source& source) {
+void read_fields(Reader& read, Scene& scene, const SceneSource& source) {
     constexpr float usual_air = 1.2f;  // kg/m³
     std::optional<float> air;
     read.table("simulation", [&](Reader& inside) {
@@ -402,7 +404,7 @@ bool names_source(const Change& change) {
 }
 
 // "collider.3={…}" where there are two: a third.
-void add_one(toml::array& tables, const std::string& key, const Change& change, const Source& source) {
+void add_one(toml::array& tables, const std::string& key, const Change& change, const SceneSource& source) {
     const toml::table value = parse_value(key, change.substr(change.find('=') + 1));
     const toml::table* one = value.get_as<toml::table>(key);
     if (key != std::to_string(tables.size() + 1) || !one)
@@ -413,7 +415,7 @@ void add_one(toml::array& tables, const std::string& key, const Change& change, 
 }
 
 void apply(toml::table& root, const Change& change) {
-    const Source source{"--set " + change};
+    const SceneSource source{"--set " + change};
     const auto equals = change.find('=');
     if (equals == std::string::npos || equals == 0)
         source.fail(0, "no value", "write --set body.brain.nodes=5000");
@@ -452,7 +454,8 @@ void apply(toml::table& root, const Change& change) {
 
 namespace {
 
-toml::table changed_table(const std::string& text, const Source& source, std::span<const Change> changes) {
+toml::table changed_table(const std::string& text, const SceneSource& source,
+                          std::span<const Change> changes) {
     toml::table root;
     try {
         root = toml::parse(text);
@@ -471,7 +474,7 @@ toml::table changed_table(const std::string& text, const Source& source, std::sp
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& folder,
                   std::span<const Change> changes) {
-    const Source source{name};
+    const SceneSource source{name};
     toml::table root = changed_table(text, source, changes);
     Scene scene;
     scene.name = std::filesystem::path(name).stem().string();
@@ -484,7 +487,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
 
 std::string changed(const SceneText& scene, std::span<const Change> changes) {
     std::ostringstream text;
-    text << changed_table(scene.text, Source{scene.name}, changes) << '\n';
+    text << changed_table(scene.text, SceneSource{scene.name}, changes) << '\n';
     return text.str();
 }
 

@@ -25,7 +25,7 @@ inline int line_of(const toml::node& node) { return int(node.source().begin.line
 /// called with are errors, found by finish().
 class Reader {
  public:
-    Reader(const toml::table& table, const Source& source, std::string what)
+    Reader(const toml::table& table, const SceneSource& source, std::string what)
         : table_(table), source_(source), what_(std::move(what)) {}
 
     template <class T>
@@ -146,7 +146,7 @@ class Reader {
 
  private:
     const toml::table& table_;
-    const Source& source_;
+    const SceneSource& source_;
     std::string what_;
     std::set<std::string> known_;
 };

@@ -7,7 +7,7 @@ namespace palpate {
 namespace {
 
 // A frame in which a shape is simple, and its size there.
-struct Frame {
+struct ShapeFrame {
     vec3 origin = vec3(0);
     mat3 axes = mat3(1);
     int kind = round_box;
@@ -21,26 +21,28 @@ mat3 axes_around(vec3 y) {
     return {x, y, glm::cross(x, y)};
 }
 
-Frame frame(const Plane& plane) {
+ShapeFrame frame(const Plane& plane) {
     return {plane.normal * plane.offset, axes_around(plane.normal), half_space};
 }
-Frame frame(const Sphere& sphere) {
+ShapeFrame frame(const Sphere& sphere) {
     return {sphere.centre, mat3(1), round_box, vec4(0, 0, 0, sphere.radius)};
 }
-Frame frame(const Capsule& capsule) {
+ShapeFrame frame(const Capsule& capsule) {
     const vec3 along = capsule.to - capsule.from;
     const float length = glm::length(along);
     return {0.5f * (capsule.from + capsule.to), length > 0 ? axes_around(along / length) : mat3(1), round_box,
             vec4(0, length / 2, 0, capsule.radius)};
 }
-Frame frame(const Box& box) {
+ShapeFrame frame(const Box& box) {
     return {box.centre, {box.axes[0], box.axes[1], box.axes[2]}, round_box, vec4(box.half, box.rounding)};
 }
-Frame frame(const Polygon& polygon) { return {.kind = palpate::polygon, .thickness = polygon.thickness}; }
-Frame frame(const DistanceField&) { return {.kind = field}; }
+ShapeFrame frame(const Polygon& polygon) {
+    return {.kind = palpate::polygon, .thickness = polygon.thickness};
+}
+ShapeFrame frame(const DistanceField&) { return {.kind = field}; }
 
 Obstacle obstacle(const Collider& collider, const Motion& motion) {
-    const Frame shape = std::visit([](const auto& s) { return frame(s); }, collider.shape);
+    const ShapeFrame shape = std::visit([](const auto& s) { return frame(s); }, collider.shape);
     const vec3 origin = motion.position + motion.rotation * shape.origin;
     const mat3 axes = motion.rotation * shape.axes;
     auto row = [&](vec3 axis) { return vec4(axis, -glm::dot(axis, origin)); };

@@ -22,11 +22,6 @@ constexpr const char* captured[] = {"next_position", "next_velocity", "next_sum_
 
 gl::Program program(const Text& text) {
     const std::string whole = text.physics + pass_vert;
-    if (std::getenv("DUMP")) {
-        FILE* f = fopen(std::getenv("DUMP"), "w");
-        fputs(whole.c_str(), f);
-        fclose(f);
-    }
     return gl::Program({{GL_VERTEX_SHADER, "pass.vert", whole}},
                        std::span(captured).first(text.sums ? 4 : 2));
 }

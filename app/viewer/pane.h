@@ -29,9 +29,9 @@ struct Traces {
 };
 
 /// One picture in the window: an experiment as a renderer draws it.
-class View {
+class Pane {
  public:
-    View(const gl::Context& context, ivec2 size) : renderer_({size.x, size.y}, &context), size_(size) {}
+    Pane(const gl::Context& context, ivec2 size) : renderer_({size.x, size.y}, &context), size_(size) {}
 
     void resize(ivec2 size);
     void set(const Quality& quality);

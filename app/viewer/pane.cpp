@@ -1,4 +1,4 @@
-#include "app/viewer/view.h"
+#include "app/viewer/pane.h"
 
 #include <algorithm>
 
@@ -18,19 +18,19 @@ std::vector<uvec2> edges_of(const std::vector<uvec3>& triangles) {
 
 }  // namespace
 
-void View::resize(ivec2 size) {
+void Pane::resize(ivec2 size) {
     if (size == size_) return;
     size_ = size;
     renderer_.resize({size.x, size.y});
 }
 
-void View::set(const Quality& quality) {
+void Pane::set(const Quality& quality) {
     if (quality == quality_) return;
     quality_ = quality;
     renderer_.set(quality);
 }
 
-void View::draw(const Experiment& experiment, const Camera& camera, const Look3d& look,
+void Pane::draw(const Experiment& experiment, const Camera& camera, const Look3d& look,
                 const Traces& traces) {
     if (experiment.shapes() != shapes_) {
         renderer_.clear();
@@ -60,7 +60,7 @@ void View::draw(const Experiment& experiment, const Camera& camera, const Look3d
     renderer_.draw(picture);
 }
 
-void View::add_wireframe(const Experiment& experiment, Picture& picture) {
+void Pane::add_wireframe(const Experiment& experiment, Picture& picture) {
     const std::vector<Skin>& skins = experiment.play().skins();
     if (edges_.empty())
         for (const Skin& skin : skins) edges_.push_back(edges_of(*skin.triangles));
