@@ -5,9 +5,9 @@
 
 namespace palpate {
 
-/// The one exception of Palpate: a file, a device, a context or a shader that cannot be used.
+/// The one exception of Palpate: a file, a device, a context, a shader or an argument that cannot be used.
 /// what() is a single line, "WHAT in WHERE; REMEDY": what is wrong, in which file or device, and what to do.
-/// Wrong use of the library asserts instead, and a simulation step never throws.
+/// In a step and in a haptic loop nothing throws: what they are given is looked at before they begin.
 class Error : public std::runtime_error {
  public:
     Error(std::string_view what, std::string_view where, std::string_view remedy)

@@ -1,6 +1,6 @@
 #include "palpate/base/team.h"
 
-#include <cassert>
+#include "palpate/base/error.h"
 
 namespace palpate {
 namespace {
@@ -28,7 +28,8 @@ void wait_while(const std::atomic<unsigned>& counter, unsigned value) {
 }  // namespace
 
 Team::Team(int members) {
-    assert(members >= 1);
+    if (members < 1 || members > 1024)
+        throw Error(std::to_string(members) + " members", "a team", "use 1 to 1,024");
     for (int member = 1; member < members; ++member)
         threads_.emplace_back([this, member] { stand_by(member); });
 }

@@ -89,6 +89,13 @@ struct Body {
     const Stencil& stencil() const { return std::get<Stencil>(springs); }
 };
 
+/// What messages call it.
+std::string name_in_errors(const Body& body);
+
+/// Throws Error where its lists are not as long as one another, name nodes that it does not have, or hold
+/// what is not finite. Whatever makes a solver or hangs a surface on a body asks this first.
+void check(const Body& body);
+
 /// The springs of any body written out; a stencil's links stay in their order.
 Table table(const Body& body);
 
@@ -97,6 +104,10 @@ std::vector<uvec2> spring_ends(const Body& body);
 
 /// Where each cell is in the grid: the place of its first corner.
 std::vector<ivec3> cell_places(const Body& body);
+
+/// The mean edges of a body's cells at rest, m: along which the axes of its grid lie, however it is turned.
+/// Zero where there are no cells.
+mat3 cell_edges(const Body& body);
 
 /// Mass of the free nodes, kg.
 double mass(const Body& body);
@@ -108,8 +119,9 @@ struct State {
     double lag = 0;  // s, how far the velocities are behind the positions (half a step in Verlet)
 };
 
-/// How many cells lie inside out: their corners enclose no volume, or a negative one. A lattice that is
-/// pressed together too hard gets stuck like this; it takes a finer lattice or a wider tip to avoid it.
+/// How many cells lie inside out: their corners enclose no volume, or one of another sign than at rest. A
+/// lattice that is pressed together too hard gets stuck like this; it takes a finer lattice or a wider tip to
+/// avoid it.
 std::size_t inverted_cells(const Body& body, std::span<const vec3> positions);
 
 /// What motion and stretched springs hold.

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
+#include <cmath>
 #include <map>
 
 namespace palpate {
@@ -15,7 +15,8 @@ namespace {
 
 // A sheet's mass, by each node's part of its area.
 void weigh(Body& body, const ClothSettings& settings) {
-    assert((settings.density > 0) != (settings.mass > 0));
+    if ((settings.density > 0) == (settings.mass > 0))
+        throw Error("both a density and a mass above zero, or none", "the cloth", "give it one of them");
     double whole = 0;
     for (float a : body.area) whole += a;
     const double density = settings.density > 0 ? settings.density : settings.mass / whole;
@@ -96,6 +97,11 @@ std::vector<Ring> rings_of(const Mesh& mesh) {
 }  // namespace
 
 Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
+    if (std::min(dims.x, dims.y) < 1 || double(dims.x) * dims.y > 3e7)
+        throw Error(fmt::format("{} x {} nodes", dims.x, dims.y), "the cloth",
+                    "use fewer than 30 million, and 1 or more along each side");
+    if (!(spacing > 0 && std::isfinite(spacing)))
+        throw Error(fmt::format("a spacing of {} m", spacing), "the cloth", "use one above zero");
     Body body;
     body.spacing = spacing;
     body.fan = 4;
@@ -131,6 +137,7 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
 }
 
 Body cloth(const Mesh& mesh, const ClothSettings& settings) {
+    check(mesh, "the surface of a cloth");
     Body body;
     body.positions = mesh.positions;
     const std::vector<Ring> rings = rings_of(mesh);
@@ -176,7 +183,9 @@ Body cloth(const Mesh& mesh, const ClothSettings& settings) {
 
 Body net(std::span<const vec3> positions, std::span<const float> masses, std::span<const NetSpring> springs,
          std::span<const uvec3> faces) {
-    assert(masses.size() == positions.size());
+    if (masses.size() != positions.size())
+        throw Error(fmt::format("{} masses of {} nodes", masses.size(), positions.size()), "the net",
+                    "give one a node");
     auto check = [&](long node) {
         if (node < 0 || node >= long(positions.size()))
             throw Error(fmt::format("node {} of {}", node, positions.size()), "the net",

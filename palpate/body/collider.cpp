@@ -1,17 +1,18 @@
 #include "palpate/body/collider.h"
 
+#include "palpate/base/error.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/solid.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
-#include <cassert>
 
 namespace palpate {
 
 float DistanceField::at(vec3 p) const {
-    assert(dims.x > 1 && dims.y > 1 && dims.z > 1);
+    if (std::min({dims.x, dims.y, dims.z}) < 2)
+        throw Error("fewer than 2 points along an axis", "a distance field", "give it more");
     const vec3 way = (p - origin) / spacing;
     vec3 place;  // a motion that blows up brings points that are no numbers: they count as the first corner
     for (int k = 0; k < 3; ++k) place[k] = way[k] > 0 ? std::min(way[k], float(dims[k] - 1)) : 0;

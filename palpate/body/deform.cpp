@@ -1,7 +1,10 @@
 // Carries surfaces along: mapping.inl for as many vertices at once as a register holds floats, compiled once
 // for each instruction set.
+#include "palpate/base/error.h"
 #include "palpate/base/team.h"
 #include "palpate/body/embedding_parts.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -176,6 +179,11 @@ std::size_t count(const Embedding& embedding) {
     return std::get<std::vector<OnTriangle>>(embedding.vertices).size();
 }
 
+bool needs_normals(const Embedding& embedding) {
+    const auto* vertices = std::get_if<std::vector<OnTriangle>>(&embedding.vertices);
+    return vertices && std::ranges::any_of(*vertices, [](const OnTriangle& v) { return v.curvature > 0; });
+}
+
 std::vector<vec4> with_room(std::span<const vec3> vectors) {
     std::vector<vec4> list;
     list.reserve(vectors.size());
@@ -222,6 +230,12 @@ void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size
 
 void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
             std::vector<vec3>& normals, std::vector<vec4>* tangents, Team* team) {
+    if (nodes.positions.size() < embedding.nodes)
+        throw Error(fmt::format("{} nodes of a body that has {}", nodes.positions.size(), embedding.nodes),
+                    "the surface that hangs on it", "hand in all of them");
+    if (nodes.normals.size() < embedding.nodes && needs_normals(embedding))
+        throw Error("no approximate normals for a mapping that needs them", "the surface that is deformed",
+                    "hand in Solver::nodes(), or approximate_normals()");
     const std::size_t vertices = count(embedding);
     positions.resize(vertices);
     normals.resize(vertices);

@@ -3,20 +3,20 @@
 #include "palpate/base/error.h"
 #include "palpate/body/embedding_parts.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace palpate {
 namespace {
-
-std::string name_or(const Body& body, const char* otherwise) {
-    return body.name.empty() ? otherwise : body.name;
-}
 
 void check(const Body& body, Mapping mapping) {
     if (!body.cells.empty()) return;
     if (mapping == Mapping::trilinear)
-        throw Error("no cell for the trilinear mapping to hang a surface in", name_or(body, "the body"),
+        throw Error("no cell for the trilinear mapping to hang a surface in", name_in_errors(body),
                     "use the mapping frames, or a lattice at least two nodes thick along each axis");
     if (body.faces.empty())
-        throw Error("a body with neither filled cells nor faces", name_or(body, "the lattice"),
+        throw Error("a body with neither filled cells nor faces", name_in_errors(body),
                     "make it at least two nodes thick along each axis to hang a surface on it, or give a net "
                     "faces");
 }
@@ -117,6 +117,8 @@ Embedding embed_by_trial(const Mesh& surface, const Body& body) {
 }  // namespace
 
 Embedding embed(const Mesh& surface, const Body& body, Mapping mapping) {
+    check(surface, "the surface that is hung on " + name_in_errors(body));
+    check(body);
     if (surface.positions.empty()) return {};
     check(body, mapping);
     if (surface.normals.size() != surface.positions.size()) {
@@ -129,14 +131,21 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping) {
     if (mapping == Mapping::automatic) mapping = body.cells.empty() ? Mapping::frames : Mapping::trilinear;
     const bool has_tangents = surface.tangents.size() == surface.positions.size();
     const std::vector<vec4> tangents = has_tangents ? surface.tangents : std::vector<vec4>();
-    if (mapping == Mapping::trilinear) return {embed_in_cells(surface, body), tangents};
-    if (mapping == Mapping::frames) return {embed_on_frames(surface, body), tangents};
+    if (mapping == Mapping::trilinear) {
+        auto vertices = embed_in_cells(surface, body);
+        auto in_cells = tangents_in(vertices, body, tangents);
+        return {std::move(vertices), std::move(in_cells), cell_edges(body), body.count()};
+    }
+    if (mapping == Mapping::frames) return {embed_on_frames(surface, body), tangents, {}, body.count()};
     auto vertices = embed_on_triangles(surface, body, mapping);
     auto in_bases = tangents_in(vertices, body, tangents);
-    return {std::move(vertices), std::move(in_bases)};
+    return {std::move(vertices), std::move(in_bases), {}, body.count()};
 }
 
 std::vector<vec3> approximate_normals(const Body& body, std::span<const vec3> positions) {
+    if (positions.size() < body.count())
+        throw Error(fmt::format("{} positions of {} nodes", positions.size(), body.count()),
+                    name_in_errors(body), "hand in one for each");
     const Table springs = table(body);
     std::vector<vec3> normals(body.count(), vec3(0));
     for (std::size_t i = 0; i < body.count(); ++i) {

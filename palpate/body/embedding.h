@@ -37,8 +37,8 @@ inline std::span<const Named<Mapping>> names(Mapping) {
 
 /// A vertex in a cell of the lattice.
 struct InCell {
-    vec3 at;                   // where in the cell, 0 to 1 along each axis; a vertex outside goes beyond
-    vec3 normal;               // of the surface at rest, unit
+    vec3 at;                   // where in the cell, 0 to 1 along each edge; a vertex outside goes beyond
+    vec3 normal;               // of the surface at rest, along the cell's own axes, unit
     std::array<int, 8> nodes;  // the cell's corners
 };
 
@@ -88,19 +88,22 @@ struct Framed {
 struct Embedding {
     std::variant<std::vector<InCell>, std::vector<OnTriangle>, Framed> vertices;
     std::vector<vec4> tangents;  // at rest, in the same basis as the normals; empty if the mesh has none
+    mat3 edges = mat3(0);        // m, of the cells at rest (cell_edges), where it hangs in cells
+    std::size_t nodes = 0;       // of the body
 };
 
-/// Hangs a surface on a body at rest; normals are computed where it has none. Each vertex goes to the nearest
-/// cell or triangle as seen from inside the surface, so that it does not stick to the other wall of a narrow
-/// gap. Throws Error if the body has neither cells nor faces, or if trilinear is asked for and it has no
-/// cells.
+/// Hangs a surface on a body at rest, however that lies turned; normals are computed where it has none. Each
+/// vertex goes to the nearest cell or triangle as seen from inside the surface, so that it does not stick to
+/// the other wall of a narrow gap. Throws Error if surface or body are not sound (check()), if the body has
+/// neither cells nor faces, or if trilinear is asked for and it has no cells.
 Embedding embed(const Mesh& surface, const Body& body, Mapping mapping = Mapping::automatic);
 
 /// Positions and unit normals of the surface for the nodes' current places, and if asked its tangents: unit,
 /// at right angles to the normals, their handedness kept. Outputs are resized; tangents are empty if the mesh
 /// had none. The nodes' approximate normals are used by one-to-one, interpolated and normal-offset; the
-/// others need none. Collapsed triangles and cells give finite positions and unit normals all the same. A
-/// team, if there is one, shares the work; it changes no bit.
+/// others need none. Throws Error where there are fewer nodes than the body has. Collapsed triangles and
+/// cells give finite positions and unit normals all the same. A team, if there is one, shares the work; it
+/// changes no bit.
 void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
             std::vector<vec3>& normals, std::vector<vec4>* tangents = nullptr, Team* team = nullptr);
 

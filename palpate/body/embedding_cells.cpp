@@ -3,34 +3,102 @@
 namespace palpate {
 namespace {
 
-float distance_to_cell(vec3 point, vec3 corner, float spacing) {
-    return glm::length(glm::max(glm::max(corner - point, point - corner - spacing), vec3(0)));
+using Followed = MappingText::Followed;
+
+// How a vertex at `at` in a cell follows it at rest, and the gradient there: how far a cell's width leads
+// along each of its axes, m. In double, so that cells may be as small or as large as floats can say.
+Followed follow_at_rest(const Body& body, const std::array<int, 8>& nodes, vec3 at) {
+    vec3 corners[8];
+    for (std::size_t k = 0; k < 8; ++k) corners[k] = body.positions[std::size_t(nodes[k])];
+    return MappingText::in_cell(corners, at.x, at.y, at.z);
 }
+dmat3 gradient(const Followed& f) { return {dvec3(f.x), dvec3(f.y), dvec3(f.z)}; }
+
+// Where a place is in a cell: from its middle by Newton's steps, of which the first leads there in a cell
+// whose edges are parallel, as all of a grid's are, however it lies turned.
+vec3 place_in(const Body& body, const std::array<int, 8>& nodes, vec3 place) {
+    vec3 at(0.5f);
+    for (int step = 0; step < 4; ++step) {
+        const Followed there = follow_at_rest(body, nodes, at);
+        if (glm::determinant(gradient(there)) == 0) break;
+        at += vec3(glm::inverse(gradient(there)) * (dvec3(place) - dvec3(there.position)));
+    }
+    return at;
+}
+
+// A normal and a tangent along the axes of a cell, so that deform() gives back the same at rest: it carries
+// normals by the cofactors of the gradient, tangents by the gradient itself.
+vec3 normal_in(const dmat3& gradient, vec3 n) {
+    const double side = glm::determinant(gradient) < 0 ? -1 : 1;  // of a cell that is its mirror image
+    const dvec3 in_cell = side * (glm::transpose(gradient) * dvec3(n));
+    return glm::length(in_cell) > 0 ? vec3(glm::normalize(in_cell)) : n;
+}
+vec3 tangent_in(const dmat3& gradient, vec3 t) {
+    if (glm::determinant(gradient) == 0) return t;
+    const dvec3 in_cell = glm::inverse(gradient) * dvec3(t);
+    return glm::length(in_cell) > 0 ? vec3(glm::normalize(in_cell)) : t;
+}
+
+// The nearest cell to a vertex; of cells about as near, the one nearest to a point half a cell inside, so
+// that the far wall of a gap is not taken for the near one.
+class NearestCell {
+ public:
+    explicit NearestCell(const Body& body)
+        : body_(body),
+          edges_(cell_edges(body)),
+          inverse_(glm::inverse(dmat3(edges_))),
+          nearby_(boxes(body)) {}
+
+    const std::array<int, 8>& operator()(vec3 v, vec3 n) const {
+        const vec3 inside = v - 0.5f * body_.spacing * n;
+        const int best =
+            nearby_.best(v, [&](int c, float) { return distance(v, c) + 0.25f * distance(inside, c); });
+        return body_.cells[std::size_t(best)];
+    }
+
+ private:
+    static std::vector<Bounds> boxes(const Body& body) {
+        std::vector<Bounds> boxes(body.cells.size());
+        for (std::size_t c = 0; c < boxes.size(); ++c)
+            for (int node : body.cells[c]) boxes[c].include(body.positions[std::size_t(node)]);
+        return boxes;
+    }
+    float distance(vec3 point, int cell) const {
+        const int first = body_.cells[std::size_t(cell)][0];
+        const vec3 at = inverse_ * (point - body_.positions[std::size_t(first)]);
+        return glm::length(edges_ * glm::max(glm::max(-at, at - 1.0f), vec3(0)));
+    }
+
+    const Body& body_;
+    const mat3 edges_, inverse_;
+    const Nearby nearby_;
+};
 
 }  // namespace
 
 std::vector<InCell> embed_in_cells(const Mesh& surface, const Body& body) {
-    std::vector<Bounds> boxes(body.cells.size());
-    for (std::size_t c = 0; c < boxes.size(); ++c) {
-        boxes[c].include(body.positions[body.cells[c][0]]);
-        boxes[c].include(body.positions[body.cells[c][7]]);
-    }
-    const Nearby cells(boxes);
+    const NearestCell nearest(body);
     std::vector<InCell> vertices;
     vertices.reserve(surface.positions.size());
     for (std::size_t i = 0; i < surface.positions.size(); ++i) {
         const vec3 v = surface.positions[i], n = surface.normals[i];
-        // The nearest cell to the vertex; of cells about as near, the one nearest to a point half a cell
-        // inside, so that the far wall of a gap is not taken for the near one.
-        const vec3 inside = v - 0.5f * body.spacing * n;
-        const auto& nodes = body.cells[cells.best(v, [&](int c, float) {
-            const vec3 corner = body.positions[body.cells[c][0]];
-            return distance_to_cell(v, corner, body.spacing) +
-                   0.25f * distance_to_cell(inside, corner, body.spacing);
-        })];
-        vertices.push_back({(v - body.positions[nodes[0]]) / body.spacing, n, nodes});
+        const auto& nodes = nearest(v, n);
+        const vec3 at = place_in(body, nodes, v);
+        vertices.push_back({at, normal_in(gradient(follow_at_rest(body, nodes, at)), n), nodes});
     }
     return vertices;
+}
+
+std::vector<vec4> tangents_in(std::span<const InCell> vertices, const Body& body,
+                              const std::vector<vec4>& tangents) {
+    if (tangents.empty()) return {};
+    std::vector<vec4> in_cells;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const auto& [at, normal, nodes] = vertices[i];
+        in_cells.emplace_back(tangent_in(gradient(follow_at_rest(body, nodes, at)), vec3(tangents[i])),
+                              tangents[i].w);
+    }
+    return in_cells;
 }
 
 }  // namespace palpate

@@ -139,7 +139,9 @@ std::vector<InCell> embed_in_cells(const Mesh& surface, const Body& body);
 std::vector<OnTriangle> embed_on_triangles(const Mesh& surface, const Body& body, Mapping mapping);
 Framed embed_on_frames(const Mesh& surface, const Body& body);
 
-/// Tangents of the surface in the bases of the vertices at rest.
+/// Tangents of the surface in the cells, or in the bases, of the vertices at rest.
+std::vector<vec4> tangents_in(std::span<const InCell> vertices, const Body& body,
+                              const std::vector<vec4>& tangents);
 std::vector<vec4> tangents_in(std::span<const OnTriangle> vertices, const Body& body,
                               const std::vector<vec4>& tangents);
 

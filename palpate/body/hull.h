@@ -11,10 +11,11 @@ namespace palpate {
 struct HullTriangle {
     std::array<int, 3> nodes;  // counter-clockwise seen from outside
     int cell;                  // the cell it belongs to
-    vec3 normal;               // at rest: along an axis of the grid
+    vec3 normal;               // at rest, unit: the same for all that look along one axis of the grid
 };
 
-/// The outside of a lattice: two triangles for each face of a filled cell that no filled cell covers.
+/// The outside of a lattice: two triangles for each face of a filled cell that no filled cell covers. It may
+/// lie turned, or be its own mirror image.
 std::vector<HullTriangle> hull(const Body& body);
 
 /// The hull as a surface, with sharp edges: a node on an edge or a corner gives one vertex for each

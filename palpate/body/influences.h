@@ -41,7 +41,8 @@ struct Move {
 
 inline constexpr std::size_t most_presses = 8, most_drags = 8;  // on a body at once
 
-/// What acts on a body from outside during one call of Solver::step, besides gravity.
+/// What acts on a body from outside during one call of Solver::step, besides gravity. Solver::step says what
+/// it refuses.
 struct Influences {
     std::span<const Press> presses = {};
     std::span<const Drag> drags = {};

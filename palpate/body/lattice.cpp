@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -110,7 +109,9 @@ void weigh(Body& body, const Material& material, bool equal, double volume) {
     const double total = material.mass > 0 ? material.mass
                          : volume > 0      ? material.density * volume
                                            : material.density * std::pow(body.spacing, 3) * parts;
-    for (std::size_t i = 0; i < body.count(); ++i) body.inverse_mass[i] = float(parts / (total * part[i]));
+    // What has no mass no force can move.
+    for (std::size_t i = 0; i < body.count(); ++i)
+        body.inverse_mass[i] = total > 0 ? float(parts / (total * part[i])) : 0;
 }
 
 // How much of the outside each node stands for: a third of each hull triangle at it. Where no cell is filled,
@@ -121,11 +122,30 @@ void spread_area(Body& body) {
         for (int node : triangle.nodes) body.area[node] += body.spacing * body.spacing / 6;
 }
 
+// One of two numbers must be above zero, the other 0.
+bool is_one(float a, float b) { return a >= 0 && b >= 0 && (a > 0) != (b > 0) && std::isfinite(a + b); }
+
+// Nothing is said of it: a cage that is moved by others.
+bool is_bare(const Material& material) {
+    return material.youngs_modulus == 0 && material.stiffness == 0 && material.density == 0 &&
+           material.mass == 0;
+}
+
+void check_stiffness(const Material& material) {
+    if (!is_one(material.youngs_modulus, material.stiffness))
+        throw Error("both a Young's modulus and a stiffness above zero, or none", "the material of a lattice",
+                    "give it one of them");
+}
+void check_mass(const Material& material) {
+    if (!is_one(material.density, material.mass))
+        throw Error("both a density and a mass above zero, or none", "the material of a lattice",
+                    "give it one of them");
+}
+
 // Nodes at the grid's points, the springs between them, and the masses. `equal`: all links are whole, at the
 // rim too. `volume`: of the solid, m³; 0 if the cells' own is meant.
 Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, std::vector<Link> links,
               const Material& material, bool equal, double volume) {
-    assert((material.density > 0) != (material.mass > 0));
     Body body;
     body.spacing = spacing;
     body.damping = material.damping;
@@ -237,7 +257,9 @@ void mark_surface(const Mesh& mesh, Sampled& sampled) {
 }  // namespace
 
 Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& progress) {
-    assert((settings.material.youngs_modulus > 0) != (settings.material.stiffness > 0));
+    check(mesh, "the surface of a lattice");
+    check_stiffness(settings.material);
+    check_mass(settings.material);
     const Bounds box = bounds(mesh);
     const double volume = std::abs(palpate::volume(mesh));
     if (!(volume > 0))
@@ -283,6 +305,8 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
 }
 
 bool restuff(Body& body, const Material& from, const Material& to, double volume) {
+    check_stiffness(to);
+    check_mass(to);
     if (equal_links(from) != equal_links(to)) return false;
     Stencil& springs = std::get<Stencil>(body.springs);
     springs.links = isotropic_links(to, body.spacing);
@@ -296,6 +320,12 @@ bool restuff(Body& body, const Material& from, const Material& to, double volume
 namespace {
 
 Body plain_box(ivec3 dims, float spacing, std::vector<Link> links, const Material& material, bool equal) {
+    const dvec3 size(dims);
+    if (std::min({dims.x, dims.y, dims.z}) < 0 || size.x * size.y * size.z > most_cells)
+        throw Error(fmt::format("{} x {} x {} nodes", dims.x, dims.y, dims.z), "the lattice",
+                    "use fewer than 30 million, and 1 or more along each axis");
+    if (!(spacing > 0 && std::isfinite(spacing)))
+        throw Error(fmt::format("a spacing of {} m", spacing), "the lattice", "use one above zero");
     Cells cells{glm::max(dims - 1, ivec3(0)), {}};
     cells.filled.assign(std::size_t(cells.dims.x) * cells.dims.y * cells.dims.z, 1);
     GridIndex grid(ivec3(0), dims);
@@ -306,11 +336,15 @@ Body plain_box(ivec3 dims, float spacing, std::vector<Link> links, const Materia
 }  // namespace
 
 Body lattice(ivec3 dims, float spacing, const Material& material) {
-    assert((material.youngs_modulus > 0) != (material.stiffness > 0));
+    if (!is_bare(material)) {
+        check_stiffness(material);
+        check_mass(material);
+    }
     return plain_box(dims, spacing, isotropic_links(material, spacing), material, equal_links(material));
 }
 
 Body lattice(ivec3 dims, float spacing, const SpringKinds& stiffness, const Material& material) {
+    check_mass(material);
     return plain_box(dims, spacing, links_of_kinds(stiffness, spacing), material, true);
 }
 

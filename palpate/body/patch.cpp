@@ -1,9 +1,9 @@
 #include "palpate/body/patch.h"
 
+#include "palpate/base/error.h"
 #include "palpate/mesh/triangle.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -41,9 +41,14 @@ Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, dou
       mesh_(std::make_unique<Mesh>()) {
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         const Touchable& surface = surfaces[s];
-        assert(surface.velocities.empty() || surface.velocities.size() == surface.positions.size());
+        if (!surface.velocities.empty() && surface.velocities.size() != surface.positions.size())
+            throw Error("speeds of another number of vertices", "a surface to touch",
+                        "give every vertex one, or none");
         for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
             const uvec3 triangle = surface.triangles[t];
+            if (std::max({triangle.x, triangle.y, triangle.z}) >= surface.positions.size())
+                throw Error("a triangle with a vertex that is not there", "a surface to touch",
+                            "count vertices from 0");
             if (!comes_near(surface, triangle, centre, radius)) continue;
             const bool whole = is_finite(surface.positions[triangle.x]) &&
                                is_finite(surface.positions[triangle.y]) &&

@@ -1,6 +1,10 @@
 #include "palpate/body/select.h"
 
-#include <cassert>
+#include "palpate/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -57,7 +61,12 @@ std::vector<int> nodes_labelled(const Body& body, const Volume& labels, float la
 }
 
 void strengthen(Body& body, std::span<const float> factors) {
-    assert(factors.size() == body.count());
+    if (factors.size() != body.count())
+        throw Error(fmt::format("{} factors on the strength of {} nodes", factors.size(), body.count()),
+                    name_in_errors(body), "give one a node");
+    for (float factor : factors)
+        if (!(factor >= 0 && std::isfinite(factor)))
+            throw Error("a factor that is negative or not finite", name_in_errors(body), "use 0 or more");
     if (auto* stencil = std::get_if<Stencil>(&body.springs)) {
         stencil->strength.resize(body.count(), 1);
         for (std::size_t i = 0; i < factors.size(); ++i) stencil->strength[i] *= factors[i];
@@ -70,7 +79,11 @@ void strengthen(Body& body, std::span<const float> factors) {
 }
 
 void pin(Body& body, std::span<const int> nodes) {
-    for (int node : nodes) body.inverse_mass[node] = 0;
+    for (int node : nodes)
+        if (node < 0 || std::size_t(node) >= body.count())
+            throw Error(fmt::format("node {} of {}", node, body.count()), name_in_errors(body),
+                        "count nodes from 0");
+    for (int node : nodes) body.inverse_mass[std::size_t(node)] = 0;
 }
 
 }  // namespace palpate

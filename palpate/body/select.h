@@ -25,7 +25,8 @@ std::vector<int> nodes_labelled(const Body& body, const Volume& labels, float la
 /// the mean of its ends'.
 void strengthen(Body& body, std::span<const float> factors);
 
-/// No force moves these nodes any more: their inverse mass becomes 0.
+/// No force moves these nodes any more: their inverse mass becomes 0. Throws Error if the body has not all of
+/// them.
 void pin(Body& body, std::span<const int> nodes);
 
 }  // namespace palpate

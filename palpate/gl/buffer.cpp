@@ -1,7 +1,8 @@
 #include "palpate/gl/buffer.h"
 
+#include "palpate/base/error.h"
+
 #include <algorithm>
-#include <cassert>
 
 namespace palpate::gl {
 
@@ -21,7 +22,8 @@ Buffer Buffer::room(std::size_t bytes) {
 }
 
 void Buffer::upload(Bytes bytes) {
-    assert(!fixed_);
+    if (fixed_)
+        throw Error("an upload", "a buffer whose size is fixed", "put values into it, or make another");
     glNamedBufferData(name(), static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STREAM_DRAW);
 }
 

@@ -1,6 +1,7 @@
 #include "palpate/gl/context.h"
 
 #include "palpate/base/error.h"
+#include "palpate/gl/visit.h"
 
 #include <dlfcn.h>
 #include <epoxy/egl.h>
@@ -266,6 +267,7 @@ void Context::read(unsigned buffer, std::span<std::byte> to) const {
 
 void Context::read_texture(unsigned texture, unsigned format, unsigned type, std::span<std::byte> to) const {
     ++parts_->reads;
+    const Visit visit;
     glGetTextureImage(texture, 0, format, type, static_cast<GLsizei>(to.size()), to.data());
 }
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <vector>
 
 namespace palpate::gl {
@@ -25,8 +24,9 @@ Layout layout(GLenum format) {
         case GL_R32F:
             return {GL_RED, GL_FLOAT};
         default:
-            assert(format == GL_RGBA32F);
-            return {GL_RGBA, GL_FLOAT};
+            if (format == GL_RGBA32F) return {GL_RGBA, GL_FLOAT};
+            throw Error("a format that no shader here reads", "a field",
+                        "use RGBA32F, R32F, RGBA32UI or R32I");
     }
 }
 
@@ -62,8 +62,14 @@ Field::Field(GLenum format, std::size_t bytes, std::size_t slots, int width, Byt
     put(values);
 }
 
+void Field::check_fits(std::size_t bytes_at_hand) const {
+    if (bytes_at_hand > bytes())
+        throw Error(fmt::format("{} bytes where there is room for {}", bytes_at_hand, bytes()), "a field",
+                    "put in no more values than it has slots");
+}
+
 void Field::put(Bytes values) {
-    assert(values.size() <= bytes());
+    check_fits(values.size());
     if (values.empty()) return;
     if (buffer_) return glNamedBufferSubData(buffer_->name(), 0, GLsizeiptr(values.size()), values.data());
     const auto width = std::size_t(flat_->width()), given = values.size() / bytes_, rows = given / width;
@@ -76,14 +82,15 @@ void Field::put(Bytes values) {
 }
 
 void Field::copy(const Field& from) {
-    assert(from.slots_ == slots_ && from.width() == width());
+    if (from.slots_ != slots_ || from.width() != width() || from.format_ != format_)
+        throw Error("a copy of a field of another kind or size", "a field", "make both alike");
     if (buffer_) return glCopyNamedBufferSubData(from.buffer(), buffer(), 0, 0, GLsizeiptr(bytes()));
     glCopyImageSubData(from.texture(), GL_TEXTURE_2D, 0, 0, 0, 0, texture(), GL_TEXTURE_2D, 0, 0, 0, 0,
                        flat_->width(), flat_->height(), 1);
 }
 
 void Field::get(const Context& context, std::span<std::byte> to) const {
-    assert(to.size() <= bytes());
+    check_fits(to.size());
     if (buffer_) return context.read(buffer_->name(), to);
     std::vector<std::byte> all(bytes_ * std::size_t(flat_->width()) * std::size_t(flat_->height()));
     context.read_texture(flat_->name(), layout(format_).format, layout(format_).type, all);

@@ -18,7 +18,7 @@ class Field {
     /// Filled from `values`, the rest with zeros. Throws Error if the driver has no room for so many.
     Field(GLenum format, std::size_t bytes, std::size_t slots, int width, Bytes values = {});
 
-    /// Replaces the first values.
+    /// Replaces the first values. Throws Error if there are more than slots; so do the next two.
     void put(Bytes values);
     /// Takes what another field of the same kind and size holds; nothing goes through the host.
     void copy(const Field& from);
@@ -34,6 +34,8 @@ class Field {
     std::size_t bytes() const { return bytes_ * slots_; }
 
  private:
+    void check_fits(std::size_t bytes_at_hand) const;
+
     GLenum format_;
     std::size_t bytes_, slots_;
     std::optional<Buffer> buffer_;

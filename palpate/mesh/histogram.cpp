@@ -1,7 +1,8 @@
 #include "palpate/mesh/histogram.h"
 
+#include "palpate/base/error.h"
+
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -51,7 +52,9 @@ Range common(const Histogram& histogram, const Volume& volume) {
 }  // namespace
 
 Histogram histogram(const Volume& volume, int bins) {
-    assert(!volume.values.empty() && bins > 1);
+    if (volume.values.empty() || bins < 2)
+        throw Error("no values, or fewer than 2 bars to count them in", "the histogram of " + volume.name,
+                    "give it both");
     Histogram histogram;
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
     histogram.lowest = *low, histogram.highest = *high;

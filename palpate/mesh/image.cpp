@@ -16,7 +16,6 @@
 #include <stb/stb_image_write.h>
 #include <zlib.h>
 
-#include <cassert>
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -106,8 +105,10 @@ Image parse_image(std::string_view bytes, const std::string& name) {
 }
 
 void write_png(const Image& image, const std::filesystem::path& path) {
-    assert(image.width > 0 && image.height > 0);
-    assert(image.pixels.size() == 4u * image.width * image.height);
+    if (image.width < 1 || image.height < 1 ||
+        image.pixels.size() != 4 * std::size_t(image.width) * std::size_t(image.height))
+        throw Error("a picture of another number of pixels than its size says", path.string(),
+                    "give it four bytes a pixel");
     // A short write is noticed by write_file, which asks the file.
     auto append = [](void* file, void* bytes, int count) {
         std::fwrite(bytes, 1, static_cast<std::size_t>(count), static_cast<std::FILE*>(file));

@@ -7,7 +7,6 @@
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -91,7 +90,9 @@ void add_quad(Mesh& mesh, openvdb::Vec4I q, bool turn_over) {
 }  // namespace
 
 Mesh isosurface(const Volume& volume, float iso) {
-    assert(volume.count() > 0 && volume.values.size() == volume.count());
+    if (volume.count() == 0 || volume.values.size() != volume.count())
+        throw Error("a volume of another number of values than its dims say", volume.name,
+                    "give it one a voxel");
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
     if (!(*low < iso && iso < *high))
         throw Error(fmt::format("no surface at the value {} (its voxels hold {} to {})", iso, *low, *high),

@@ -1,7 +1,8 @@
 #include "palpate/mesh/mesh.h"
 
+#include "palpate/base/error.h"
+
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -95,8 +96,24 @@ void compute_normals_by_place(Mesh& mesh) {
     for (std::size_t i = 0; i < first.size(); ++i) mesh.normals[i] = mesh.normals[first[i]];
 }
 
+void check(const Mesh& mesh, std::string_view where) {
+    const std::size_t count = mesh.positions.size();
+    auto fits = [&](const auto& list) { return list.empty() || list.size() == count; };
+    if (!fits(mesh.normals) || !fits(mesh.uvs) || !fits(mesh.tangents))
+        throw Error("normals, texture coordinates or tangents of another number of vertices", where,
+                    "give every vertex one, or none at all");
+    for (uvec3 t : mesh.triangles)
+        if (std::max({t.x, t.y, t.z}) >= count)
+            throw Error("a triangle with a vertex that is not there", where, "count vertices from 0");
+    for (vec3 p : mesh.positions)
+        if (!std::isfinite(p.x + p.y + p.z))
+            throw Error("a vertex at a place that is not finite", where, "give places in m");
+}
+
 void compute_tangents(Mesh& mesh) {
-    assert(mesh.uvs.size() == mesh.positions.size());
+    check(mesh, "the mesh that wants tangents");
+    if (mesh.uvs.size() != mesh.positions.size())
+        throw Error("no texture coordinates", "the mesh that wants tangents", "give every vertex some");
     if (mesh.normals.size() != mesh.positions.size()) compute_normals(mesh);
     std::vector<vec3> along_u(mesh.positions.size(), vec3(0)), along_v = along_u;
     for (uvec3 t : mesh.triangles) {

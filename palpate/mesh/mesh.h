@@ -3,6 +3,7 @@
 #include "palpate/base/vectors.h"
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace palpate {
@@ -28,6 +29,10 @@ std::span<const Named<Units>> names(Units);
 /// Metres per unit: 0.001 for millimetres.
 float metres(Units units);
 
+/// Throws Error where a mesh's triangles name vertices that it does not have, its lists are not as long as
+/// one another, or a vertex is at a place that is not finite. `where`: what the message calls it.
+void check(const Mesh& mesh, std::string_view where);
+
 Bounds bounds(const Mesh& mesh);
 
 /// Enclosed volume in m³ (divergence theorem, summed in double); negative if the mesh is inside out.
@@ -48,7 +53,8 @@ void compute_normals_by_place(Mesh& mesh);
 /// Fills mesh.tangents from its texture coordinates: at each vertex the mean of its faces' ways along u, each
 /// by the face's angle there, brought to right angles with the normal; w says whether v runs along the normal
 /// × the tangent (1) or against it (-1), as most of its faces say. A vertex whose faces have no area in the
-/// texture gets any tangent. Where a texture meets its own mirror image, vertices should be two.
+/// texture gets any tangent. Where a texture meets its own mirror image, vertices should be two. Throws Error
+/// if it has no texture coordinates.
 void compute_tangents(Mesh& mesh);
 
 /// Turns by degrees about x, then y, then z, about the world's origin. (-90, 0, 0) takes z up to y up.

@@ -1,6 +1,10 @@
 #include "palpate/mesh/relief.h"
 
-#include <cassert>
+#include "palpate/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -23,7 +27,9 @@ float woven(vec2 p) {
 }  // namespace
 
 Image normal_map(std::span<const float> heights, int width) {
-    assert(width > 0 && heights.size() % std::size_t(width) == 0);
+    if (width < 1 || heights.empty() || heights.size() % std::size_t(width) != 0)
+        throw Error(fmt::format("{} heights in rows of {}", heights.size(), width), "the normal map",
+                    "give it whole rows");
     const int height = int(heights.size()) / width;
     Image image{width, height, {}};
     image.pixels.reserve(4 * heights.size());
@@ -44,7 +50,9 @@ Image normal_map(std::span<const float> heights, int width) {
 
 Image weave(ivec2 threads) {
     constexpr int pixels = 16;  // a thread
-    assert(std::min(threads.x, threads.y) >= 1);
+    if (std::min(threads.x, threads.y) < 1 || std::max(threads.x, threads.y) > 1024)
+        throw Error(fmt::format("{} x {} threads", threads.x, threads.y), "the weave",
+                    "use 1 to 1,024 each way");
     std::vector<float> heights;
     const ivec2 size = pixels * threads;
     for (int y = 0; y < size.y; ++y)

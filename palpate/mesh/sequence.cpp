@@ -10,10 +10,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -211,6 +214,35 @@ class Morphs : public Sequence {
     Headless file_;
 };
 
+// Any of them, with pictures that fit it.
+class Checked : public Sequence {
+ public:
+    Checked(const Mesh& mesh, const std::filesystem::path& path, std::unique_ptr<Sequence> sequence)
+        : vertices_(mesh.positions.size()),
+          has_normals_(!mesh.normals.empty()),
+          path_(path),
+          sequence_(std::move(sequence)) {}
+
+    void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) override {
+        if (positions.size() != vertices_ || (has_normals_ && normals.size() != vertices_))
+            throw Error("a picture of another number of vertices than the sequence's", path_.string(),
+                        "give every vertex of the mesh a position, and a normal if the mesh has them");
+        if (!(std::isfinite(time) && time > last_))
+            throw Error(fmt::format("a picture at {} s after one at {} s", time, last_), path_.string(),
+                        "add them in their order");
+        last_ = time;
+        sequence_->add(time, positions, normals);
+    }
+    void finish() override { sequence_->finish(); }
+
+ private:
+    std::size_t vertices_;
+    bool has_normals_;
+    std::filesystem::path path_;
+    std::unique_ptr<Sequence> sequence_;
+    double last_ = -std::numeric_limits<double>::infinity();  // s
+};
+
 enum class Kind { numbered, cache, morphs };
 
 Kind kind_of(const std::filesystem::path& path) {
@@ -228,10 +260,13 @@ void check_sequence_name(const std::filesystem::path& path) { kind_of(path); }
 
 std::unique_ptr<Sequence> make_sequence(const Mesh& mesh, const std::filesystem::path& path,
                                         std::size_t pictures) {
+    check(mesh, path.string());
     const Kind kind = kind_of(path);
-    if (kind == Kind::numbered) return std::make_unique<Numbered>(mesh, path, pictures);
-    if (kind == Kind::cache) return std::make_unique<Cache>(mesh, path);
-    return std::make_unique<Morphs>(mesh, path, pictures);
+    std::unique_ptr<Sequence> sequence;
+    if (kind == Kind::numbered) sequence = std::make_unique<Numbered>(mesh, path, pictures);
+    if (kind == Kind::cache) sequence = std::make_unique<Cache>(mesh, path);
+    if (kind == Kind::morphs) sequence = std::make_unique<Morphs>(mesh, path, pictures);
+    return std::make_unique<Checked>(mesh, path, std::move(sequence));
 }
 
 }  // namespace palpate

@@ -8,8 +8,6 @@
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include <cassert>
-
 namespace palpate {
 namespace {
 
@@ -52,7 +50,9 @@ struct SignedDistance::Grid {
 };
 
 SignedDistance::SignedDistance(const Mesh& mesh, float voxel) {
-    assert(voxel > 0);
+    check(mesh, "the mesh whose distance is wanted");
+    if (!(voxel > 0))
+        throw Error(fmt::format("a voxel of {} m", voxel), "the signed distance", "use a width above zero");
     const Bounds box = bounds(mesh);
     check_memory(box.size(), voxel);
     const vec3 low = box.low - 0.5f * voxel;  // half a voxel keeps a box's walls off the voxels themselves

@@ -1,7 +1,7 @@
+#include "palpate/base/error.h"
 #include "palpate/mesh/corners.h"
 #include "palpate/mesh/repair.h"
 
-#include <cassert>
 #include <unordered_map>
 #include <vector>
 
@@ -57,7 +57,8 @@ class Kept {
 // Welds the vertices for which `chosen` is true, each to one before it.
 template <class F>
 std::size_t weld_chosen(Mesh& mesh, float tolerance, F chosen) {
-    assert(tolerance >= 0);
+    if (!(tolerance >= 0))
+        throw Error("a tolerance that is negative or not a number", "welding", "use 0 or more, in m");
     Kept kept(mesh.positions, tolerance);
     std::vector<Index> place(mesh.positions.size());
     Index count = 0;

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -128,7 +127,7 @@ const Format& format_of(const std::filesystem::path& path) {
 void check_mesh_name(const std::filesystem::path& path) { format_of(path); }
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
-    assert(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+    check(mesh, path.string());
     write_text(path, format_of(path).text(mesh, path.string()));
 }
 

@@ -1,6 +1,7 @@
 #include "palpate/run/play.h"
 
 #include "palpate/base/clock.h"
+#include "palpate/base/error.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/run/run.h"
 
@@ -8,7 +9,6 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -155,7 +155,8 @@ void Play::restore(const std::vector<State>& states) {
 }
 
 void Play::take_tools(const Play& from) {
-    assert(from.handles_.size() == handles_.size());
+    if (from.handles_.size() != handles_.size())
+        throw Error("another number of tools", "the scene whose tools are taken over", "give both the same");
     for (std::size_t t = 0; t < handles_.size(); ++t)
         if (const auto* tip = std::get_if<Tip>(&from.handles_[t])) {
             Tip same = *tip;

@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -172,13 +171,14 @@ void read_maps(const BodyRecipe& recipe, const std::filesystem::path& folder, Mo
     if (recipe.weave) model.normal_map = weave(*recipe.weave);
 }
 
-// A grid is made and its surface hung on it at the origin, where its cells lie along the axes.
+// A grid is made and its surface hung on it at the origin, where its sides lie along the axes.
 void place(Model& model, const BodyRecipe& recipe) {
     const mat3 turned = turn(recipe.rotate);
     for (vec3& p : model.body.positions) p = turned * p + recipe.move;
     for (vec3& p : model.surface.positions) p = turned * p + recipe.move;
     for (vec3& n : model.surface.normals) n = turned * n;
     for (vec4& t : model.surface.tangents) t = vec4(turned * vec3(t), t.w);
+    model.embedding.edges = turned * model.embedding.edges;
 }
 
 // The same with the first of its files that is found; with the one it wants where none is.
@@ -445,7 +445,9 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
         result.moves.push_back(find_moved(scene.moves[i], i + 1, scene, result.models, result.notes));
         pin(result.models[result.moves[i].body].body, result.moves[i].nodes);
     }
-    assert(scene.simulation.colliders.empty());  // they are recipes still
+    if (!scene.simulation.colliders.empty())
+        throw Error("colliders in the simulation of a scene", "the scene",
+                    "give them as recipes, in Scene::colliders");
     result.simulation = scene.simulation;
     for (const ColliderRecipe& recipe : scene.colliders) add_collider(recipe, scene, result);
     for (const ToolRecipe& tool : scene.tools)

@@ -19,15 +19,19 @@ bool needs(const Scheme& scheme, Where where) {
     return false;
 }
 
-double step_under(const Influences& influences, const Body& body, const Simulation& simulation,
-                  double frequency) {
-    if (simulation.step > 0) return simulation.step;
+double LongestStep::under(const Influences& influences) {
+    if (simulation_.step > 0) return simulation_.step;
     float contact = 0, pull = 0;  // they may all meet at one node
     for (const Press& press : influences.presses) contact += pressure_per_metre(press);
     for (const Drag& drag : influences.drags) pull += drag.stiffness;
-    const double touched = touched_frequency(body, frequency, std::max(contact, simulation.contact),
-                                             std::max(pull, simulation.pull));
-    return automatic_step(simulation.integrator, touched, body.damping, body.link_damping);
+    contact = std::max(contact, simulation_.contact);
+    pull = std::max(pull, simulation_.pull);
+    if (!last_ || last_->contact != contact || last_->pull != pull) {
+        const double touched = touched_frequency(body_, frequency_, contact, pull);
+        last_ = {contact, pull,
+                 automatic_step(simulation_.integrator, touched, body_.damping, body_.link_damping)};
+    }
+    return last_->step;
 }
 
 Stats about_to_do(const Influences& influences, double seconds, double longest) {
@@ -47,16 +51,6 @@ Stats undone(const Stats& stats) {
     nothing.reactions.assign(stats.reactions.size(), dvec3(0));
     nothing.pulls.assign(stats.pulls.size(), dvec3(0));
     return nothing;
-}
-
-bool names_nodes(const Influences& influences, const Body& body) {
-    auto known = [&](int node) { return node >= 0 && std::size_t(node) < body.count(); };
-    for (const Drag& drag : influences.drags)
-        if (!known(drag.node)) return false;
-    for (const Move& move : influences.moves)
-        if (move.nodes.size() != move.to.size() || !std::all_of(move.nodes.begin(), move.nodes.end(), known))
-            return false;
-    return true;
 }
 
 }  // namespace palpate

@@ -3,6 +3,8 @@
 #include "palpate/solver/scheme.h"
 #include "palpate/solver/solver.h"
 
+#include <optional>
+
 namespace palpate {
 
 /// The states of a body that a backend keeps. A step begins at `current`. Its passes write between and
@@ -63,17 +65,32 @@ struct Call {
     double lag_after() const { return scheme.staggered ? step / 2 : 0; }
 };
 
-/// The longest step that a solver takes under these influences, s; `frequency`: the body's highest, rad/s.
-double step_under(const Influences& influences, const Body& body, const Simulation& simulation,
-                  double frequency);
+/// The longest step that a solver takes under influences. Finding it takes longer than a step of a small body
+/// does, so it is found again only when what it depends on has changed: how strong presses and drags are.
+class LongestStep {
+ public:
+    /// `frequency`: the body's highest, rad/s. Body and simulation have to outlive it.
+    LongestStep(const Body& body, const Simulation& simulation, double frequency)
+        : body_(body), simulation_(simulation), frequency_(frequency) {}
+
+    double under(const Influences& influences);  // s
+
+ private:
+    struct Found {
+        float contact, pull;
+        double step;
+    };
+
+    const Body& body_;
+    const Simulation& simulation_;
+    double frequency_;
+    std::optional<Found> last_;
+};
 
 /// What a call is about to report: its steps, no longer than `longest` (s), and nothing yet of what they do.
 Stats about_to_do(const Influences& influences, double seconds, double longest);
 
 /// What it reports if the motion has blown up and all is as it was before.
 Stats undone(const Stats& stats);
-
-/// Whether influences name only nodes that the body has, and a place for each.
-bool names_nodes(const Influences& influences, const Body& body);
 
 }  // namespace palpate

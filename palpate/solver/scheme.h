@@ -15,7 +15,7 @@ struct Stage {
     bool from_sum = false;  // that sum stands for x and v here
 };
 
-/// How an integrator makes a step: a row of the table in scheme.cpp, which docs/integrators.md derives.
+/// How an integrator makes a step: a line of scheme.cpp, which docs/integrators.md derives.
 struct Scheme {
     std::span<const Stage> stages;
     bool staggered = false;     // velocities live half a step behind positions

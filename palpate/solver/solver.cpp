@@ -1,9 +1,9 @@
 #include "palpate/solver/solver.h"
 
 #include "palpate/base/error.h"
+#include "palpate/solver/check.h"
 #include "palpate/solver/cpu/cpu.h"
 #include "palpate/solver/gpu/gpu.h"
-#include "palpate/solver/pass.h"
 #include "palpate/solver/reference/reference.h"
 #include "palpate/solver/stability.h"
 
@@ -16,9 +16,6 @@ namespace palpate {
 namespace {
 
 constexpr double most_steps_per_frame = 1000;
-constexpr std::size_t most_triangles = 1000;
-
-std::string name_in_errors(const Body& body) { return body.name.empty() ? "the body" : "body " + body.name; }
 
 const char* remedy(Integrator integrator, bool for_the_tools) {
     if (for_the_tools) return "use softer tools, or a heavier body";
@@ -48,15 +45,6 @@ void check_step(const Body& body, const Simulation& simulation, double frequency
                     where, remedy(integrator, touched > 2 * frequency));
 }
 
-void check_colliders(const Simulation& simulation) {
-    if (simulation.colliders.size() > std::size(Pass{}.obstacle))
-        throw Error(fmt::format("{} colliders", simulation.colliders.size()), "the colliders",
-                    fmt::format("use at most {}", std::size(Pass{}.obstacle)));
-    if (const std::size_t corners = polygon_corners(simulation).size(); corners > 3 * most_triangles)
-        throw Error(fmt::format("{} triangles in polygons", corners / 3), "the colliders",
-                    fmt::format("use at most {}, or the distance field of a closed mesh", most_triangles));
-}
-
 }  // namespace
 
 int steps_within(double seconds, double longest) {
@@ -66,12 +54,12 @@ int steps_within(double seconds, double longest) {
 
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
                                     const gl::Context* context, double frequency) {
+    check(body, simulation);
     if (!(frequency > 0)) frequency = highest_frequency(body);
     if (!std::isfinite(frequency))
         throw Error("masses or springs that are not finite", name_in_errors(body),
                     "give all nodes a mass above zero, and all springs finite stiffness");
     check_step(body, simulation, frequency);
-    check_colliders(simulation);
     switch (simulation.backend) {
         case Backend::reference:
             return make_reference<float>(body, simulation, frequency);
@@ -82,7 +70,7 @@ std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulati
         case Backend::compute:
             return make_gpu(body, simulation, frequency, context);
     }
-    return nullptr;
+    throw Error("a backend that there is not", "the simulation", "choose one of " + all_names<Backend>());
 }
 
 }  // namespace palpate

@@ -29,13 +29,16 @@ struct Stats {
 /// How many equal steps, none longer than `longest`, fill a time; at least one.
 int steps_within(double seconds, double longest);
 
-/// Owns a body's moving state on one backend and moves it. A step never throws, unless a graphics card is
-/// lost.
+/// Owns a body's moving state on one backend and moves it. What happens in a step never throws, unless a
+/// graphics card is lost; what a caller hands in is looked at before anything moves.
 class Solver {
  public:
     virtual ~Solver() = default;
 
-    /// Moves the body on by `seconds`, in equal steps no longer than the chosen one.
+    /// Moves the body on by `seconds`, in equal steps no longer than the chosen one. Throws Error, and
+    /// nothing has moved, where `seconds` is not above zero, more act than most_presses or most_drags, an
+    /// influence is not finite or names a node that the body does not have, or colliders have not one motion
+    /// each.
     virtual Stats step(double seconds, const Influences& influences = {}) = 0;
 
     /// The longest step that step() would take with these, s.
@@ -44,7 +47,8 @@ class Solver {
     /// The highest frequency of the body's free motion, rad/s (stability.h).
     virtual double frequency() const = 0;
 
-    /// Puts back what was before the last call of step(); once for each call.
+    /// Puts back what was before the last call of step(). Throws Error where that is put back already: after
+    /// restore(), or when the motion blew up.
     virtual void undo() = 0;
 
     /// Where the nodes are now; valid until the next step. From a GPU they are read back, once a step.
@@ -62,18 +66,19 @@ class Solver {
     /// here.
     virtual State save() const = 0;
 
-    /// Goes on from a state of the same body, from save() or state() of any integrator and backend.
+    /// Goes on from a state of the same body, from save() or state() of any integrator and backend. Throws
+    /// Error if it is of another number of nodes.
     virtual void restore(const State& state) = 0;
 
     /// Bytes that the moving state and the springs take on this backend.
     virtual std::size_t memory() const = 0;
 };
 
-/// Throws Error if a step above the stability bound is asked for without `force`, if the integrator has none
-/// without damping, if a frame would take more than 1,000 steps, or if there are more colliders than fit. A
-/// backend of the GPU works in `context`, which has to outlive the solver, or if there is none in one of its
-/// own; it throws Error if there is no OpenGL. `frequency`: the body's highest, if it is known; finding it
-/// takes longer than all the rest.
+/// Throws Error if body or simulation hold what cannot be (check()), if a step above the stability bound is
+/// asked for without `force`, if the integrator has none without damping, if a frame would take more than
+/// 1,000 steps, or if there are more colliders than fit. A backend of the GPU works in `context`, which has
+/// to outlive the solver, or if there is none in one of its own; it throws Error if there is no OpenGL.
+/// `frequency`: the body's highest, if it is known; finding it takes longer than all the rest.
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
                                     const gl::Context* context = nullptr, double frequency = 0);
 

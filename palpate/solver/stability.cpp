@@ -67,6 +67,7 @@ dvec2 one_step(const Scheme& scheme, double step, double frequency, double dampi
 }  // namespace
 
 double highest_frequency(const Body& body) {
+    check(body);
     const RestStiffness stiffness(body);
     std::mt19937 random(1);  // the same start, and so the same answer, every time
     std::uniform_real_distribution<double> part(-1, 1);

@@ -5,7 +5,7 @@
 namespace palpate {
 
 /// The highest frequency of a body's free motion about its rest shape, rad/s; 0 where nothing can move. Found
-/// by power iteration, so it is at most 1 or 2 % too low.
+/// by power iteration, so it is at most 1 or 2 % too low. Throws Error if the body does not hold (check()).
 double highest_frequency(const Body& body);
 
 /// The same with presses of `contact` (Pa/m, pressure_per_metre) and drags of `pull` (N/m) on any node: each

@@ -1,7 +1,8 @@
 #include "palpate/touch/force.h"
 
+#include "palpate/base/error.h"
+
 #include <algorithm>
-#include <cassert>
 
 namespace palpate {
 
@@ -13,7 +14,8 @@ dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel
     for (const Contact& contact : proxy.contacts()) sunk += contact.depth * contact.normal;
     const double depth = glm::length(sunk);
     if (!(depth > 0)) return dvec3(0);
-    assert(std::size_t(most->surface) < feels.size());
+    if (std::size_t(most->surface) >= feels.size())
+        throw Error("fewer feels than the patch has surfaces", "the force of a proxy", "give one for each");
     const Feel& feel = feels[std::size_t(most->surface)];
     const dvec3 normal = sunk / depth;
 

@@ -1,9 +1,9 @@
 #include "palpate/touch/proxy.h"
 
+#include "palpate/base/error.h"
 #include "palpate/mesh/triangle.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -275,6 +275,8 @@ const Contact* Proxy::deepest() const {
 }
 
 double Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction) {
+    if (friction.size() < patch.surfaces())
+        throw Error("fewer frictions than the patch has surfaces", "a proxy", "give one for each");
     const bool touched = count_ > 0;
     const dvec3 before = place_;
     const double explained = patch.fastest() * std::clamp(time - time_, 0.0, Patch::longest_guess);
@@ -292,7 +294,6 @@ double Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<cons
         dvec3 sunk(0);
         for (const Contact& contact : contacts()) sunk += contact.depth * contact.normal;
         const auto surface = std::size_t(deepest()->surface);
-        assert(surface < friction.size());
         const Friction& rough = friction[surface];
         const double way = glm::length(along);
         slips_ = way > (slips_ ? rough.sliding : rough.still) * glm::length(sunk);

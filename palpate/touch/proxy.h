@@ -32,7 +32,8 @@ class Proxy {
     void put(dvec3 place);
 
     /// Goes as near to the hand as the patch allows, whose surfaces have moved on to `time` (s). `friction`:
-    /// one for each surface of the patch. Beyond what the patch knows it does not go.
+    /// one for each surface of the patch; throws Error if they are fewer. Beyond what the patch knows it does
+    /// not go.
     /// Returns how far surfaces have pushed or carried it, in m, beyond what their speeds explain: 0, unless
     /// a surface appeared or jumped.
     double follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction);

@@ -73,7 +73,7 @@ TEST(House, TheWholeLibraryIsInItsOneHeader) {
         "solver/cpu/layout.h", "solver/cpu/laid_body.h", "body/embedding_parts.h", "body/cells.h",
         "body/grid.h",         "mesh/corners.h",         "mesh/ending.h",          "mesh/bytes.h",
         "mesh/gltf.h",         "mesh/parts.h",           "scene/check.h",          "scene/toml_reader.h",
-        "solver/pass.h"};
+        "solver/pass.h",       "solver/check.h"};
     for (const auto& entry : std::filesystem::recursive_directory_iterator(house)) {
         const std::string below = std::filesystem::relative(entry.path(), house).string();
         const bool part_of_drawing =
@@ -83,6 +83,20 @@ TEST(House, TheWholeLibraryIsInItsOneHeader) {
             continue;
         EXPECT_NE(all.find("palpate/" + below), std::string::npos) << below;
     }
+}
+
+// What the library does depends on its arguments, and on these two: where data lie, and programs.
+TEST(House, TheLibraryReadsNoOtherEnvironmentVariables) {
+    static const std::regex variable(R"re(getenv\(("\w+")?)re");
+    const std::set<std::string> known = {"\"PALPATE_DATA\"", "\"PATH\""};
+    int found = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(house)) {
+        if (!entry.is_regular_file()) continue;
+        const std::string text = read_text(entry.path());
+        for (std::sregex_iterator i(text.begin(), text.end(), variable), end; i != end; ++i, ++found)
+            EXPECT_TRUE(known.contains((*i)[1])) << entry.path() << " asks for " << (*i)[1];
+    }
+    EXPECT_GT(found, 0);
 }
 
 // ---- names that stand twice ----

@@ -199,6 +199,26 @@ TEST(Sequence, UnfinishedItLeavesNothing) {
     EXPECT_EQ(scratch.entries(), 0u);
 }
 
+TEST(Sequence, RefusesPicturesThatDoNotFit) {
+    Scratch scratch;
+    Mesh mesh = ball();
+    compute_normals(mesh);
+    const std::span<const vec3> positions(mesh.positions), normals(mesh.normals);
+    for (const char* name : {"a.ply", "a.pc2", "a.glb"}) {
+        const auto sequence = make_sequence(mesh, scratch / name, 3);
+        const auto refused = [&](double time, std::span<const vec3> p, std::span<const vec3> n) {
+            return error_of(scratch / name, [&] { sequence->add(time, p, n); });
+        };
+        EXPECT_HAS(refused(0, positions.first(7), normals), "number of vertices");
+        EXPECT_HAS(refused(0, positions, normals.first(7)), "number of vertices");
+        EXPECT_HAS(refused(std::nan(""), positions, normals), "order");
+        sequence->add(0.5, positions, normals);
+        EXPECT_HAS(refused(0.5, positions, normals), "order");
+        sequence->add(0.6, positions, normals);
+        sequence->finish();
+    }
+}
+
 TEST(Sequence, RefusesOtherEndings) {
     Scratch scratch;
     for (const char* name : {"a.gltf", "a.mp4", "a"})

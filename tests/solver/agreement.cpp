@@ -62,6 +62,11 @@ Body turned(Body body) {
     return body;
 }
 
+Body mirrored(Body body) {
+    for (vec3& p : body.positions) p.x = -p.x;
+    return body;
+}
+
 }  // namespace
 
 std::vector<NamedBody> odd_bodies() {
@@ -83,6 +88,10 @@ std::vector<NamedBody> odd_bodies() {
         {"battered organ", battered(organ, 3)},
         {"organ with strength", with_strength(organ, 4)},
         {"turned box", turned(lattice({6, 5, 4}, 0.01f, tissue))},
+        {"turned organ with strength", turned(with_strength(organ, 7))},
+        {"battered box, mirrored", mirrored(battered(lattice({5, 6, 7}, 0.01f, tissue), 8))},
+        {"turned volume, mirrored",
+         mirrored(turned(lattice({6, 5, 4}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})))},
         {"volume of 2012", lattice({7, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})},
         {"volume with strength",
          with_strength(lattice({5, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20}), 5)},

@@ -3,8 +3,11 @@
 
 #include "palpate/base/team.h"
 #include "palpate/body/select.h"
+#include "palpate/solver/cpu/laid_body.h"
 #include "palpate/solver/cpu/layout.h"
 #include "palpate/solver/solver.h"
+#include "palpate/solver/stability.h"
+#include "tests/body/turn.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
 #include "tests/solver/agreement.h"
@@ -134,6 +137,84 @@ TEST(Cpu, IsTheReferenceWithEveryInstructionSet) {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     EXPECT_FALSE(tried.empty());
     for (std::string_view name : tried) std::cout << "  with " << name << "\n";
+}
+
+// Bodies of every grid that has a kernel of its own.
+std::vector<Body> grids() {
+    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = tissue});
+    std::vector<float> factors(organ.count());
+    for (std::size_t i = 0; i < factors.size(); ++i) factors[i] = organ.positions[i].x > 0 ? 1.0f : 3.0f;
+    Body hard = organ;
+    strengthen(hard, factors);
+    Body whole = lattice({7, 6, 5}, 0.01f, {.stiffness = 20, .density = 1000, .damping = 20});
+    return {organ, hard, whole, cloth({12, 9}, 0.01f, linen),
+            lattice({7, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})};
+}
+
+// How a body lies makes no difference: it moves as an unturned one does that is turned afterwards, takes as
+// long steps and no slower kernel.
+TEST(Cpu, ATurnedBodyMovesAsAnUnturnedOne) {
+    std::mt19937 random(16);
+    for (const Body& body : grids())
+        for (int trial = 0; trial < 4; ++trial) {
+            SCOPED_TRACE(trial);
+            ::Turn turn(random);
+            turn.shift *= 0.1f;
+            if (trial == 1) turn.turn = glm::rotate(mat4(1), glm::radians(180.0f), vec3(0, 1, 0));
+            if (trial >= 2) turn.turn = turn.turn * glm::scale(mat4(1), vec3(-1, 1, 1));
+            Body other = body;
+            other.positions = turn.points(body.positions);
+            EXPECT_NE(cpu::LaidBody(other, {}, 4).view().springs, cpu::Springs::table);
+            EXPECT_EQ(mass(other), mass(body));
+            EXPECT_NEAR(highest_frequency(other), highest_frequency(body), 2e-2 * highest_frequency(body));
+
+            const vec3 pull(0.3f, 0.1f, 0.2f);
+            const Drag drag{int(body.count() / 3), body.positions[body.count() / 3] + 0.1f * pull, pull, 3},
+                turned_drag{drag.node, turn.direction(drag.to) + turn.shift, turn.direction(pull), 3};
+            Simulation how{.step = 2e-4, .force = true, .gravity = {1, -9, 2}};
+            auto straight = make_solver(body, how);
+            how.gravity = turn.direction(how.gravity);
+            auto turned = make_solver(other, how);
+            straight->step(0.02, {.drags = {&drag, 1}});
+            turned->step(0.02, {.drags = {&turned_drag, 1}});
+            const Nodes is = turned->nodes();
+            const std::vector<vec3> begins = other.positions,
+                                    ends = turn.points({straight->nodes().positions.begin(),
+                                                        straight->nodes().positions.end()});
+            double most = 0, moved = 0;
+            for (std::size_t i = 0; i < ends.size(); ++i) {
+                const double off = glm::distance(dvec3(is.positions[i]), dvec3(ends[i]));
+                if (!(off <= most)) most = off;
+                moved = std::max(moved, glm::distance(dvec3(begins[i]), dvec3(ends[i])));
+            }
+            EXPECT_GT(moved, 1e-3);
+            EXPECT_LE(most, 2e-6);
+            EXPECT_EQ(inverted_cells(other, is.positions), inverted_cells(body, straight->nodes().positions));
+        }
+}
+
+// Found once and kept, or found again: the longest step is what stability says of what acts just now.
+TEST(Step, FollowsWhatActs) {
+    const Body body = lattice({6, 5, 7}, 0.01f, tissue);
+    const double frequency = highest_frequency(body);
+    const Press soft{.stiffness = 50}, hard{.stiffness = 5000};
+    const Drag drag{.stiffness = 200};
+    for (float expected : {0.0f, pressure_per_metre(hard) / 2}) {
+        const Simulation simulation{.contact = expected};
+        auto solver = make_solver(body, simulation);
+        for (const Influences& on :
+             {Influences{}, Influences{.presses = {&soft, 1}}, Influences{.presses = {&hard, 1}},
+              Influences{}, Influences{.drags = {&drag, 1}},
+              Influences{.presses = {&hard, 1}, .drags = {&drag, 1}}, Influences{.presses = {&soft, 1}}}) {
+            float contact = expected, pull = 0;
+            for (const Press& press : on.presses) contact = std::max(contact, pressure_per_metre(press));
+            for (const Drag& one : on.drags) pull += one.stiffness;
+            const double touched = touched_frequency(body, frequency, contact, pull);
+            for (int twice = 0; twice < 2; ++twice)
+                EXPECT_EQ(solver->longest_step(on),
+                          automatic_step(simulation.integrator, touched, body.damping, body.link_damping));
+        }
+    }
 }
 
 TEST(Cpu, TakesABodyOfNoNodes) {

@@ -1,10 +1,10 @@
 #include "palpate/solver/cpu/cpu.h"
 
 #include "palpate/base/team.h"
+#include "palpate/solver/check.h"
 #include "palpate/solver/cpu/laid_body.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -33,9 +33,10 @@ class Cpu final : public Solver {
     }
 
     Stats step(double seconds, const Influences& influences) override {
-        assert(seconds > 0 && names_nodes(influences, body_));
-        Stats stats = about_to_do(influences, seconds, longest_step(influences));
+        check(seconds, influences, body_, simulation_);
+        Stats stats = about_to_do(influences, seconds, longest_.under(influences));
         copy(states_[current], before_);
+        knows_before_ = true;
         send_off(influences.moves, seconds);
         const Call call{scheme_, simulation_, influences, body_.damping, stats.step, stats.steps, lag_};
         lag_before_ = std::exchange(lag_, call.lag_after());
@@ -51,6 +52,8 @@ class Cpu final : public Solver {
     }
 
     void undo() override {
+        if (!knows_before_) refuse_undo(body_);
+        knows_before_ = false;
         copy(before_, states_[current]);
         lag_ = lag_before_;
         published_ = false;
@@ -58,9 +61,7 @@ class Cpu final : public Solver {
 
     double frequency() const override { return frequency_; }
 
-    double longest_step(const Influences& influences) const override {
-        return step_under(influences, body_, simulation_, frequency_);
-    }
+    double longest_step(const Influences& influences) const override { return longest_.under(influences); }
 
     Nodes nodes() const override {
         if (!published_) publish();
@@ -89,7 +90,8 @@ class Cpu final : public Solver {
     }
 
     void restore(const State& state) override {
-        assert(state.positions.size() == body_.count() && state.velocities.size() == body_.count());
+        check(state, body_);
+        knows_before_ = false;
         for (std::size_t i = 0; i < body_.count(); ++i) {
             place(i, state.positions[i]);
             set_velocity(i, state.velocities[i]);
@@ -269,6 +271,7 @@ class Cpu final : public Solver {
     const Simulation simulation_;
     const Scheme& scheme_;
     const double frequency_;  // rad/s, the highest of the body with nothing touching it
+    mutable LongestStep longest_{body_, simulation_, frequency_};
     const Kernels kernels_ = kernels();
     LaidBody laid_;
     const Pass quiet_;  // nothing touches or moves it
@@ -278,6 +281,7 @@ class Cpu final : public Solver {
     Fields before_ = {};                // as it was before the call
     double lag_ = 0;                    // s, how far the velocities are behind the positions
     double lag_before_ = 0;             // the same before the call
+    bool knows_before_ = false;         // whether that can be put back
     std::vector<int> pinned_;           // nodes of infinite mass
     std::vector<int> parts_;            // of the blocks, by members
     std::vector<Bounds> moved_[4];      // of each state and block
@@ -289,6 +293,7 @@ class Cpu final : public Solver {
 }  // namespace
 
 std::unique_ptr<Solver> make_cpu(const Body& body, const Simulation& simulation, double frequency) {
+    check(body, simulation);
     return std::make_unique<Cpu>(body, simulation, frequency);
 }
 

@@ -462,12 +462,16 @@ auto of(Springs springs, Act act) {
             return act.template operator()<GridNode<LatticeStencil, 3, true, false>>();
         case Springs::lattice_with_strength:
             return act.template operator()<GridNode<LatticeStencil, 3, true, true>>();
+        case Springs::turned_lattice:
+            return act.template operator()<GridNode<LatticeStencil, 3, false, true>>();
         case Springs::cloth:
             return act.template operator()<GridNode<ClothStencil, 1, true, false>>();
         case Springs::turned_cloth:
             return act.template operator()<GridNode<ClothStencil, 1, false, true>>();
         case Springs::volume:
             return act.template operator()<GridNode<VolumeStencil, 1, true, true>>();
+        case Springs::turned_volume:
+            return act.template operator()<GridNode<VolumeStencil, 1, false, true>>();
         case Springs::table:
             break;
     }

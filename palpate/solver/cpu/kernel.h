@@ -17,7 +17,17 @@ struct Fields {
 };
 
 /// The springs a kernel is made for; other bodies write theirs out.
-enum class Springs { lattice_whole, lattice, lattice_with_strength, cloth, turned_cloth, volume, table };
+enum class Springs {
+    lattice_whole,
+    lattice,
+    lattice_with_strength,
+    turned_lattice,  // along any axes, and so are the other turned ones
+    cloth,
+    turned_cloth,
+    volume,
+    turned_volume,
+    table
+};
 
 /// A spring of a table, of every slot.
 struct TieFields {

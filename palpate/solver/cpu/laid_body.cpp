@@ -33,7 +33,8 @@ float furthest(const Body& body) {
 std::vector<vec3> links_at_rest(const Body& body) {
     const Stencil& stencil = body.stencil();
     const GridIndex number(stencil.at);
-    const float hair = 1e-5f * body.spacing + 4 * std::numeric_limits<float>::epsilon() * furthest(body);
+    // Positions that were turned and moved are rounded more than once.
+    const float hair = 1e-5f * body.spacing + 10 * std::numeric_limits<float>::epsilon() * furthest(body);
     std::vector<vec3> links;
     for (std::size_t l = 0; l < stencil.links.size(); ++l) {
         dvec3 sum(0);
@@ -68,18 +69,20 @@ std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
     if (links.empty()) return {Springs::table, {}};
     const bool straight = along_axes(body, links), even = stencil->strength.empty();
     Springs springs = Springs::table;
-    if (straight && follows(*stencil, std::span(volume_links).first(lattice_links)))
-        springs = !even             ? Springs::lattice_with_strength
+    if (follows(*stencil, std::span(volume_links).first(lattice_links)))
+        springs = !straight         ? Springs::turned_lattice
+                  : !even           ? Springs::lattice_with_strength
                   : whole(*stencil) ? Springs::lattice_whole
                                     : Springs::lattice;
-    if (straight && follows(*stencil, volume_links)) springs = Springs::volume;
+    if (follows(*stencil, volume_links)) springs = straight ? Springs::volume : Springs::turned_volume;
     if (follows(*stencil, cloth_links) && whole(*stencil))
         springs = straight && even ? Springs::cloth : Springs::turned_cloth;
     return {springs, std::move(links)};
 }
 
 bool in_quarters(Springs springs) {
-    return springs == Springs::lattice || springs == Springs::lattice_with_strength;
+    return springs == Springs::lattice || springs == Springs::lattice_with_strength ||
+           springs == Springs::turned_lattice;
 }
 
 Layout layout_for(const Body& body, Springs springs, int lanes) {
@@ -138,7 +141,8 @@ void LaidBody::lay_grid(const Body& body) {
     std::vector<float> half(body.count(), 0.5f);
     for (std::size_t i = 0; i < stencil.strength.size(); ++i) half[i] *= stencil.strength[i];
     const bool varies = view_.springs == Springs::lattice_with_strength ||
-                        view_.springs == Springs::turned_cloth || view_.springs == Springs::volume;
+                        view_.springs == Springs::turned_lattice || view_.springs == Springs::turned_cloth ||
+                        view_.springs == Springs::volume || view_.springs == Springs::turned_volume;
     if (varies) view_.half_strength = spread(half);
 }
 

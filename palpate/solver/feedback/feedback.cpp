@@ -36,6 +36,8 @@ class Feedback final : public Pipeline {
             glVertexArrayAttribFormat(nodes_.name(), attribute, 4, GL_FLOAT, GL_FALSE, 0);
             glVertexArrayAttribBinding(nodes_.name(), attribute, attribute);
         }
+        for (GLenum side : {GL_FRAMEBUFFER_DEFAULT_WIDTH, GL_FRAMEBUFFER_DEFAULT_HEIGHT})
+            glNamedFramebufferParameteri(nothing_.name(), side, 1);
     }
 
     void pass(const Fields& fields) override {
@@ -49,6 +51,7 @@ class Feedback final : public Pipeline {
         for (GLuint i = 0; i < (sums_ ? 4u : 2u); ++i)
             glTransformFeedbackBufferBase(captured_.name(), i, outputs[i]->buffer());
         program_.use();
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, nothing_.name());
         glBindVertexArray(nodes_.name());
         glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, captured_.name());
         glEnable(GL_RASTERIZER_DISCARD);
@@ -64,6 +67,7 @@ class Feedback final : public Pipeline {
 
     gl::Program program_;
     gl::VertexArray nodes_;
+    gl::Framebuffer nothing_;  // nobody draws into it, but where none is whole no draw is allowed
     gl::Handle<TransformFeedbackKind> captured_;
     bool sums_;
     GLsizei slots_;

@@ -30,15 +30,11 @@ class Fragment final : public Pipeline {
         fields.was.bind(12);
         fields.sum.positions.bind(13);
         fields.sum.velocities.bind(14);
-        GLint before = 0;
-        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target(fields).name());
-        for (GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_DEPTH_TEST}) glDisable(off);
         glViewport(0, 0, fields.next.positions.width(), fields.next.positions.height());
         program_.use();
         glBindVertexArray(no_corners_.name());
         glDrawArrays(GL_TRIANGLES, 0, 3);
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(before));
     }
 
  private:

@@ -2,6 +2,8 @@
 
 #include "palpate/gl/context.h"
 #include "palpate/gl/program.h"
+#include "palpate/gl/visit.h"
+#include "palpate/solver/check.h"
 #include "palpate/solver/gpu/answers.h"
 #include "palpate/solver/gpu/pipeline.h"
 #include "palpate/solver/gpu/placement.h"
@@ -86,9 +88,10 @@ class Gpu final : public Solver {
     ~Gpu() override { context_.make_current_or_not(); }
 
     Stats step(double seconds, const Influences& influences) override {
-        assert(seconds > 0 && names_nodes(influences, body_));
+        check(seconds, influences, body_, simulation_);
         context_.make_current();
-        Stats stats = about_to_do(influences, seconds, longest_step(influences));
+        const gl::Visit visit;
+        Stats stats = about_to_do(influences, seconds, longest_.under(influences));
         remember();
         world_.guide(influences.moves, seconds);
         const Touched* tools = influences.presses.empty() && influences.drags.empty() ? nullptr : &touched();
@@ -114,16 +117,16 @@ class Gpu final : public Solver {
     }
 
     void undo() override {
+        if (history_ < 1) refuse_undo(body_);
         context_.make_current();
+        const gl::Visit visit;
         if (answers_.pending() > 0) answers_.drop_newest();
         go_back(1);
     }
 
     double frequency() const override { return frequency_; }
 
-    double longest_step(const Influences& influences) const override {
-        return step_under(influences, body_, simulation_, frequency_);
-    }
+    double longest_step(const Influences& influences) const override { return longest_.under(influences); }
 
     Nodes nodes() const override {
         if (!published_) publish();
@@ -159,8 +162,9 @@ class Gpu final : public Solver {
     }
 
     void restore(const State& state) override {
-        assert(state.positions.size() == body_.count() && state.velocities.size() == body_.count());
+        check(state, body_);
         context_.make_current();
+        const gl::Visit visit;
         std::vector<vec4> positions(std::size_t(placement_.slots), vec4(0, 0, 0, -1)), velocities(positions);
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const auto slot = std::size_t(placement_.slot[i]);
@@ -343,6 +347,7 @@ class Gpu final : public Solver {
     // Velocities by slots at the time of the positions: half a kick brings them up.
     std::vector<vec4> velocities_now() const {
         context_.make_current();
+        const gl::Visit visit;
         Pass pass = quiet_;
         pass.kick = float(lag_ / (1 + body_.damping * lag_));
         world_.bind();
@@ -371,6 +376,7 @@ class Gpu final : public Solver {
     const Simulation simulation_;
     const Scheme& scheme_;
     const double frequency_;  // rad/s, the highest of the body with nothing touching it
+    mutable LongestStep longest_{body_, simulation_, frequency_};
     const Placement placement_;
     const int width_;  // of flat textures; 0: buffers
     World world_;
@@ -396,6 +402,12 @@ class Gpu final : public Solver {
 
 std::unique_ptr<Solver> make_gpu(const Body& body, const Simulation& simulation, double frequency,
                                  const gl::Context* context, std::optional<bool> tiles) {
+    check(body, simulation);
+    std::optional<gl::Visit> visit;  // in a context of its own nobody else is
+    if (context) {
+        context->make_current();
+        visit.emplace();
+    }
     return std::make_unique<Gpu>(body, simulation, frequency, context, tiles);
 }
 

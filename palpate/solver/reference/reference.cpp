@@ -1,10 +1,10 @@
 #include "palpate/solver/reference/reference.h"
 
+#include "palpate/solver/check.h"
 #include "palpate/solver/pass.h"
 #include "palpate/solver/schedule.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -102,9 +102,10 @@ class Reference final : public Solver {
     }
 
     Stats step(double seconds, const Influences& influences) override {
-        assert(seconds > 0 && names_nodes(influences, body_));
-        Stats stats = about_to_do(influences, seconds, longest_step(influences));
+        check(seconds, influences, body_, simulation_);
+        Stats stats = about_to_do(influences, seconds, longest_.under(influences));
         before_ = save();
+        knows_before_ = true;
         world_.dragged.clear();
         for (const Drag& drag : influences.drags) world_.dragged.push_back(drag.node);
         world_.pass.wind = vec4(influences.wind, simulation_.air);
@@ -127,11 +128,12 @@ class Reference final : public Solver {
 
     double frequency() const override { return frequency_; }
 
-    double longest_step(const Influences& influences) const override {
-        return step_under(influences, body_, simulation_, frequency_);
-    }
+    double longest_step(const Influences& influences) const override { return longest_.under(influences); }
 
-    void undo() override { restore(before_); }
+    void undo() override {
+        if (!knows_before_) refuse_undo(body_);
+        restore(before_);
+    }
 
     Nodes nodes() const override { return {positions_, normals_}; }
 
@@ -151,7 +153,8 @@ class Reference final : public Solver {
     }
 
     void restore(const State& state) override {
-        assert(state.positions.size() == body_.count() && state.velocities.size() == body_.count());
+        check(state, body_);
+        knows_before_ = false;
         for (std::size_t i = 0; i < body_.count(); ++i) {
             states_[current].positions[i] = Real3(state.positions[i]);
             states_[current].velocities[i] = Real3(state.velocities[i]);
@@ -269,11 +272,13 @@ class Reference final : public Solver {
     const Simulation simulation_;
     const Scheme& scheme_;
     double frequency_;  // rad/s, the highest of the body with nothing touching it
+    mutable LongestStep longest_{body_, simulation_, frequency_};
     World world_;
     const Pass quiet_ = world_.pass;         // nothing touches or moves it
     double lag_ = 0;                         // s, how far the velocities are behind the positions
     Moving<Real> states_[4];                 // Where
     State before_;                           // the last call
+    bool knows_before_ = false;              // whether that can be put back
     std::vector<vec3> positions_, normals_;  // what nodes() shows
 };
 
@@ -281,6 +286,7 @@ class Reference final : public Solver {
 
 template <class Real>
 std::unique_ptr<Solver> make_reference(const Body& body, const Simulation& simulation, double frequency) {
+    check(body, simulation);
     return std::make_unique<Reference<Real>>(body, simulation, frequency);
 }
 

@@ -1,13 +1,14 @@
 #include "palpate/touch/devices/faulty.h"
 
-#include <cassert>
+#include "palpate/base/error.h"
+
 #include <limits>
 
 namespace palpate {
 
 Faulty::Faulty(std::unique_ptr<Device> inner, std::vector<Fault> faults, std::function<void(double)> sleep)
     : Decorator(std::move(inner)), faults_(std::move(faults)), sleep_(std::move(sleep)) {
-    assert(sleep_);
+    if (!sleep_) throw Error("no way to sleep", "a faulty device", "hand it a function that does");
 }
 
 void Faulty::open() {

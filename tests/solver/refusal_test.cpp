@@ -1,0 +1,180 @@
+// What a caller can get wrong is an Error that says so, before anything moves.
+#include "palpate/base/error.h"
+#include "palpate/body/cloth.h"
+#include "palpate/body/lattice.h"
+#include "palpate/solver/solver.h"
+#include "tests/gl/with_context.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+const Material tissue{.youngs_modulus = 2000, .density = 1000, .damping = 40};
+constexpr float none = std::numeric_limits<float>::quiet_NaN(),
+                endless = std::numeric_limits<float>::infinity();
+
+// What an Error says, in one line; empty if there is none.
+std::string complaint(const std::function<void()>& act) {
+    try {
+        act();
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        return error.what();
+    }
+    return {};
+}
+
+void expect_refused(const std::string& word, const std::function<void()>& act) {
+    EXPECT_NE(complaint(act).find(word), std::string::npos) << word << ": " << complaint(act);
+}
+
+class Refuses : public WithContext, public ::testing::WithParamInterface<Backend> {
+ protected:
+    void SetUp() override {
+        if (on_gpu(GetParam())) WithContext::SetUp();
+    }
+    std::unique_ptr<Solver> make(const Body& body, Simulation simulation) const {
+        simulation.backend = GetParam();
+        return make_solver(body, simulation, context_ ? context() : nullptr);
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Backends, Refuses,
+                         ::testing::Values(Backend::reference, Backend::cpu, Backend::feedback,
+                                           Backend::fragment, Backend::compute),
+                         [](const auto& of) { return std::string(name_of(of.param)); });
+
+TEST_P(Refuses, WhatCannotActOnABodyOrBePutBack) {
+    Body body = lattice({4, 3, 5}, 0.01f, tissue);
+    body.inverse_mass[0] = 0;
+    const int last = int(body.count()) - 1;
+    auto solver = make(body, {.colliders = {{Sphere{vec3(5)}}}});
+    expect_refused("no step", [&] { solver->undo(); });
+    State state = solver->save();
+    solver->step(0.001);
+    solver->undo();
+    expect_refused("no step", [&] { solver->undo(); });
+    solver->step(0.001);
+    solver->restore(state);
+    expect_refused("no step", [&] { solver->undo(); });
+    state.velocities.pop_back();
+    expect_refused("another number of nodes", [&] { solver->restore(state); });
+    solver->step(0.001);
+    const State before = solver->save();
+    const auto refused = [&](const std::string& word, const Influences& influences, double seconds = 0.001) {
+        expect_refused(word, [&] { solver->step(seconds, influences); });
+    };
+    for (double seconds : {0.0, -1.0, double(none), double(endless)}) refused("above 0 s", {}, seconds);
+
+    const std::vector<Press> presses(most_presses + 1);
+    refused("8 presses", {.presses = presses});
+    for (const Press& press :
+         {Press{.centre = vec3(0, none, 0)}, Press{.velocity = vec3(endless)}, Press{.radius = 0},
+          Press{.radius = -1}, Press{.radius = none}, Press{.stiffness = -1}, Press{.stiffness = none}})
+        refused("a press", {.presses = {&press, 1}});
+
+    const std::vector<Drag> drags(most_drags + 1);
+    refused("8 drags", {.drags = drags});
+    for (const Drag& drag : {Drag{.node = -1}, Drag{.node = last + 1}, Drag{.node = 1 << 30}})
+        refused("does not have", {.drags = {&drag, 1}});
+    for (const Drag& drag : {Drag{.to = vec3(none)}, Drag{.velocity = vec3(none)}, Drag{.stiffness = -2}})
+        refused("a drag", {.drags = {&drag, 1}});
+
+    const std::vector<int> nodes = {0, last}, wrong = {0, last + 1};
+    const std::vector<vec3> places(2, vec3(0)), odd = {vec3(0), vec3(none)};
+    for (const auto& [word, move] :
+         {std::pair<std::string, Move>{"for each", {nodes, std::span(places).first(1)}},
+          {"does not have", {wrong, places}},
+          {"not finite", {nodes, odd}}})
+        refused(word, {.moves = {&move, 1}});
+
+    const std::vector<Motion> two(2), turned = {Motion{.rotation = mat3(none)}};
+    refused("another number of colliders", {.colliders = two});
+    refused("a collider's motion", {.colliders = turned});
+    refused("a wind", {.wind = vec3(0, 0, endless)});
+
+    EXPECT_TRUE(solver->save().positions == before.positions);
+    EXPECT_TRUE(solver->save().velocities == before.velocities);
+    if (on_gpu(GetParam())) return;  // its programs for tools take a second to compile
+    const std::vector<Press> as_many(most_presses);
+    const std::vector<Drag> all(most_drags, Drag{.node = last, .stiffness = 1});
+    EXPECT_FALSE(solver->step(0.001, {.presses = as_many, .drags = all}).diverged);
+}
+
+TEST(Refusal, OfBodiesThatDoNotHold) {
+    const Body sound = lattice({4, 3, 5}, 0.01f, tissue), sheet = cloth({5, 4}, 0.01f, {.density = 1});
+    Body written = sound;
+    written.springs = table(sound);
+    written.cells.clear();
+    const auto refused = [&](const std::string& word, Body body, auto spoil) {
+        spoil(body);
+        for (Backend backend : {Backend::reference, Backend::cpu, Backend::compute})
+            expect_refused(word, [&] { make_solver(body, {.backend = backend}); });
+    };
+    refused("another length", sound, [](Body& b) { b.inverse_mass.pop_back(); });
+    refused("another length", sound, [](Body& b) { b.area.clear(); });
+    refused("another length", sound, [](Body& b) { b.cover.push_back(0); });
+    refused("not finite", sound, [](Body& b) { b.positions[3].y = none; });
+    refused("negative", sound, [](Body& b) { b.inverse_mass[3] = -1; });
+    refused("not finite", sound, [](Body& b) { b.inverse_mass[3] = endless; });
+    refused("spacing", sound, [](Body& b) { b.spacing = 0; });
+    refused("damping", sound, [](Body& b) { b.damping = -1; });
+    refused("damping", sound, [](Body& b) { b.link_damping = none; });
+    refused("a stencil", sound, [](Body& b) { std::get<Stencil>(b.springs).at.pop_back(); });
+    refused("a stencil", sound, [](Body& b) { std::get<Stencil>(b.springs).shares.clear(); });
+    refused("a stencil", sound, [](Body& b) { std::get<Stencil>(b.springs).strength = {1, 2}; });
+    refused("two nodes at one place", sound, [](Body& b) { std::get<Stencil>(b.springs).at[1] = ivec3(0); });
+    refused("too large a box", sound, [](Body& b) { std::get<Stencil>(b.springs).at[1] = ivec3(1 << 30); });
+    refused("a link", sound, [](Body& b) { std::get<Stencil>(b.springs).links[2].stiffness = none; });
+    refused("32 links", sound, [](Body& b) {
+        std::get<Stencil>(b.springs).links.resize(33, {ivec3(1), 1, 1});
+    });
+    refused("a table", written, [](Body& b) { std::get<Table>(b.springs).ties.pop_back(); });
+    refused("a spring to a node", written, [](Body& b) { std::get<Table>(b.springs).ties[0].to = 60; });
+    refused("a spring to a node", written, [](Body& b) { std::get<Table>(b.springs).ties[0].to = -2; });
+    refused("cells without a grid", written, [&](Body& b) { b.cells = sound.cells; });
+    refused("a fan", sheet, [](Body& b) { b.fan = 13; });
+    refused("a fan", sheet, [](Body& b) { b.fan = -1; });
+    refused("a cell", sound, [](Body& b) { b.cells[0][7] = 60; });
+    refused("a face", sheet, [](Body& b) { b.faces[0][0] = -1; });
+}
+
+TEST(Refusal, OfSimulationsThatCannotBe) {
+    const Body body = lattice({4, 3, 5}, 0.01f, tissue);
+    const auto refused = [&](const std::string& word, const Simulation& simulation) {
+        expect_refused(word, [&] { make_solver(body, simulation); });
+    };
+    for (int threads : {0, -1, 257}) refused("threads", {.threads = threads});
+    for (double step : {-1.0, double(none), double(endless)}) refused("step", {.step = step});
+    refused("integrator", {.integrator = Integrator(77), .step = 1e-4});
+    refused("gravity", {.gravity = vec3(none)});
+    refused("air", {.air = -1});
+    refused("contact", {.contact = none});
+    refused("pull", {.pull = -1});
+    for (double frame : {0.0, double(none)}) refused("frame", {.frame = frame});
+    const auto collider = [&](const std::string& word, const Collider& one) {
+        refused(word, {.colliders = {one}});
+    };
+    collider("a plane", {Plane{vec3(0)}});
+    collider("a sphere", {Sphere{vec3(0), -1}});
+    collider("a capsule", {Capsule{vec3(none)}});
+    collider("a box", {Box{.half = vec3(-1)}});
+    collider("a polygon", {Polygon{{{vec3(0), vec3(1), vec3(none)}}}});
+    collider("a distance field", {DistanceField{}});
+    collider("a distance field", {DistanceField{vec3(0), 0.1f, ivec3(2), std::vector<float>(7, 0.0f)}});
+    collider("a friction", {Sphere{}, -0.5f});
+    refused("colliders", {.colliders = std::vector<Collider>(17)});
+    Simulation unknown;
+    unknown.backend = Backend(9);
+    expect_refused("backend", [&] { make_solver(body, unknown); });
+}
+
+}  // namespace
+}  // namespace palpate
