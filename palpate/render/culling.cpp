@@ -1,7 +1,6 @@
 #include "palpate/render/culling.h"
 
 #include "palpate/render/gpu_embedding.h"
-#include "palpate/render/reach.h"
 
 #include <algorithm>
 #include <array>
@@ -116,9 +115,10 @@ struct Made {
     std::vector<Part> parts;
 };
 
-Made<CellPart> make(const Clusters& clusters, const Mesh& mesh, const std::vector<InCell>& vertices) {
+Made<CellPart> make(const Clusters& clusters, const Mesh& mesh, const Embedding& embedding,
+                    const std::vector<InCell>& vertices) {
     Made<CellPart> made;
-    const float width = cell_width(mesh, vertices);
+    const mat3 to_cells(glm::inverse(dmat3(embedding.edges)));
     const vec3 middle = bounds(mesh).centre();
     for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
         const auto triangles = triangles_of(clusters, c);
@@ -128,8 +128,7 @@ Made<CellPart> make(const Clusters& clusters, const Mesh& mesh, const std::vecto
             Bounds box;
             for (unsigned v : group) box.include(vertices[v].at);
             const unsigned first = group.front();
-            const vec3 origin =
-                width > 0 ? (mesh.positions[first] - middle) / width - vertices[first].at : vec3(0);
+            const vec3 origin = to_cells * (mesh.positions[first] - middle) - vertices[first].at;
             for (unsigned v : group) places[v] = origin + vertices[v].at;
             made.parts.push_back({nodes, box.low, box.high, origin});
         }
@@ -146,7 +145,8 @@ void include(const vec3& weights, vec2& low, vec2& high) {
     high = max(high, vec2(weights.y, weights.z));
 }
 
-Made<TrianglePart> make(const Clusters& clusters, const Mesh&, const std::vector<OnTriangle>& vertices) {
+Made<TrianglePart> make(const Clusters& clusters, const Mesh&, const Embedding&,
+                        const std::vector<OnTriangle>& vertices) {
     Made<TrianglePart> made;
     for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
         for (const auto& [nodes, group] :
@@ -163,7 +163,7 @@ Made<TrianglePart> make(const Clusters& clusters, const Mesh&, const std::vector
     return made;
 }
 
-Made<FramePart> make(const Clusters& clusters, const Mesh&, const Framed& framed) {
+Made<FramePart> make(const Clusters& clusters, const Mesh&, const Embedding&, const Framed& framed) {
     Made<FramePart> made;
     for (std::size_t c = 0; c < clusters.ends.size(); ++c) {
         for (const auto& [frames, group] : by_nodes(members(triangles_of(clusters, c)),
@@ -187,6 +187,7 @@ Made<FramePart> make(const Clusters& clusters, const Mesh&, const Framed& framed
 
 gl::Program finder(const Embedding& embedding, bool in_textures) {
     const char* kinds[] = {cell_parts_glsl, triangle_parts_glsl, frame_parts_glsl};
+    static_assert(std::size(kinds) == std::variant_size_v<decltype(embedding.vertices)>);
     const std::string text = "#version 450 core\n" + nodes_shader(in_textures) + cluster_glsl +
                              kinds[embedding.vertices.index()] + cull_comp;
     return gl::Program({{GL_COMPUTE_SHADER, "cull.comp", text}});
@@ -198,7 +199,7 @@ Culling::Culling(const Clusters& clusters, const Mesh& mesh, const Embedding& em
     : from_buffers_(finder(embedding, false)), from_textures_(finder(embedding, true)) {
     std::visit(
         [&](const auto& vertices) {
-            const auto made = make(clusters, mesh, vertices);
+            const auto made = make(clusters, mesh, embedding, vertices);
             parts_ = gl::Buffer(made.parts);
             clusters_ = gl::Buffer(made.clusters);
         },

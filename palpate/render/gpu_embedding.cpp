@@ -1,7 +1,8 @@
 #include "palpate/render/gpu_embedding.h"
 
+#include "palpate/base/error.h"
+
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 
 namespace palpate {
@@ -88,7 +89,8 @@ GpuEmbedding::Frames::Frames(const Framed& framed)
       from_buffers(finder(false)),
       from_textures(finder(true)) {}
 
-GpuEmbedding::GpuEmbedding(const Embedding& embedding) : has_tangents_(!embedding.tangents.empty()) {
+GpuEmbedding::GpuEmbedding(const Embedding& embedding)
+    : has_tangents_(!embedding.tangents.empty()), nodes_(embedding.nodes) {
     std::visit([&](const auto& vertices) { attach(vertices); }, embedding.vertices);
     if (has_tangents_) attach_tangents(embedding.tangents);
     glSamplerParameteri(exact_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -143,7 +145,9 @@ std::string GpuEmbedding::shader(bool in_textures) const {
 }
 
 void GpuEmbedding::bind(const GpuNodes& nodes) const {
-    assert(nodes.positions != 0 && (nodes.normals != 0 || !needs_normals_));
+    if (nodes.positions == 0 || (nodes.normals == 0 && needs_normals_))
+        throw Error("no positions of nodes, or no normals where the mapping needs them", "the GPU's nodes",
+                    "fill in both");
     const GLuint normals = nodes.normals != 0 ? nodes.normals : nodes.positions;  // never read, but there
     const bool in_textures = nodes.width > 0;
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -43,6 +43,7 @@ class GpuEmbedding {
     GLuint vertex_array() const { return corners_.name(); }
     bool needs_normals() const { return needs_normals_; }
     bool has_tangents() const { return has_tangents_; }
+    std::size_t nodes() const { return nodes_; }  // so many must be there
 
  private:
     // The frames that vertices hang on, and what finds them.
@@ -65,6 +66,7 @@ class GpuEmbedding {
     const char* kind_ = nullptr;  // how a vertex of this kind follows, in GLSL
     bool needs_normals_ = false;
     bool has_tangents_ = false;
+    std::size_t nodes_ = 0;
 };
 
 /// The beginning of all GLSL that reads nodes: node_position(), node_normal(), and mapping.inl.

@@ -16,8 +16,4 @@ struct Reach {
 /// `mesh` is the one that was embedded.
 Reach reach(const Mesh& mesh, const Embedding& embedding);
 
-/// How wide the cells are in which a surface hangs, m: how far two vertices that share a node lie apart, over
-/// how far in cells. 0 if no two do.
-float cell_width(const Mesh& mesh, const std::vector<InCell>& vertices);
-
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
+#include "palpate/gl/visit.h"
 #include "palpate/mesh/thinned.h"
 #include "palpate/render/culling.h"
 #include "palpate/render/gpu_dents.h"
@@ -19,12 +20,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace palpate {
 namespace {
@@ -36,7 +37,6 @@ constexpr float ball_shine = 0.4f;
 constexpr std::size_t few_triangles = 24'000, few_of_ball = 1'280;
 constexpr std::size_t cluster_vertices = 64, cluster_faces = 124;
 constexpr GLuint colour_map_unit = 4, normal_map_unit = 5;  // as in surface.frag
-constexpr GLsizei texture_units = 6;
 
 // The attributes of placed.glsl and surface.vert.
 enum Attribute : GLuint {
@@ -152,7 +152,9 @@ gl::Sampler sampler_of_maps() {
 // OpenGL's rows go up.
 gl::Texture texture_of(const Image& image, Texels texels) {
     check_size(image.width, image.height);
-    assert(image.pixels.size() == 4 * std::size_t(image.width) * std::size_t(image.height));
+    if (image.pixels.size() != 4 * std::size_t(image.width) * std::size_t(image.height))
+        throw Error("an image of another number of pixels than its size says", "Renderer",
+                    "give it four bytes a pixel");
     std::vector<std::uint8_t> rows;
     rows.reserve(image.pixels.size());
     const std::ptrdiff_t bytes = 4 * std::ptrdiff_t(image.width);
@@ -217,30 +219,6 @@ Target target(Offscreen size, const Quality& quality) {
     return Target(scaled(size.width), scaled(size.height), quality.samples);
 }
 
-// A context may be shared with others who draw in it, such as a window's buttons. At the end of a visit they
-// find their framebuffers and viewport bound again, and off what few of them think of turning off.
-class Visit {
- public:
-    Visit() {
-        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn_);
-        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_);
-        glGetIntegerv(GL_VIEWPORT, viewport_);
-    }
-    ~Visit() {
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(drawn_));
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_));
-        glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
-        glDisable(GL_FRAMEBUFFER_SRGB);
-        glDisable(GL_DEPTH_TEST);
-        glBindSamplers(0, texture_units, nullptr);
-    }
-    Visit(const Visit&) = delete;
-    Visit& operator=(const Visit&) = delete;
-
- private:
-    GLint drawn_ = 0, read_ = 0, viewport_[4] = {};
-};
-
 }  // namespace
 
 struct Renderer::Parts {
@@ -270,6 +248,7 @@ struct Renderer::Parts {
     const Triangles& triangles(const DrawnMesh& model) const {
         return quality.every_triangle ? model.triangles : model.few;
     }
+    void check(const Picture& picture) const;
     void draw(const Picture& picture);
     std::vector<Bounds> boxes(const std::vector<Surface>& surfaces) const;
     void upload(const std::vector<Surface>& surfaces);
@@ -303,6 +282,36 @@ Renderer::Parts::Parts(Offscreen wanted, const gl::Context* given)
     ball_shape.normals = gl::Buffer(mesh.normals);
 }
 
+void Renderer::Parts::check(const Picture& picture) const {
+    auto require = [](bool holds, std::string_view what, std::string_view remedy) {
+        if (!holds) throw Error(what, "a picture", remedy);
+    };
+    for (const Surface& surface : picture.surfaces) {
+        require(surface.mesh >= 0 && std::size_t(surface.mesh) < models.size(),
+                "a surface of a mesh that was not added", "use the numbers that Renderer::add gave");
+        for (int map : {surface.look.colour_map, surface.look.normal_map})
+            require(map < int(maps.size()), "a map that was not added",
+                    "use the numbers that Renderer::add gave, or -1 for none");
+        const DrawnMesh& model = models[std::size_t(surface.mesh)];
+        if (!surface.positions.empty() || !model.embedding) {
+            require(surface.positions.size() == model.vertices && surface.normals.size() == model.vertices,
+                    "a surface of another number of positions or normals than its mesh has vertices",
+                    "give every vertex one of each, or add the mesh with an embedding and give it nodes");
+        } else if (surface.gpu_nodes.positions == 0) {
+            const std::size_t count = model.embedding->nodes();
+            require(surface.nodes.positions.size() >= count, "fewer nodes than the surface hangs on",
+                    "hand in all nodes of its body");
+            require(!model.embedding->needs_normals() || surface.nodes.normals.size() >= count,
+                    "no approximate normals of nodes, which the surface's mapping needs",
+                    "hand in Solver::nodes(), or approximate_normals()");
+        }
+    }
+    for (const Wires& some : picture.wires)
+        for (uvec2 line : some.lines)
+            require(std::max(line.x, line.y) < some.points.size(), "a line to a point that is not there",
+                    "count points from 0");
+}
+
 void Renderer::Parts::draw(const Picture& picture) {
     const std::vector<Bounds> around = boxes(picture.surfaces);
     const Extent things = extent(picture, around);
@@ -319,7 +328,6 @@ void Renderer::Parts::draw(const Picture& picture) {
     upload(picture.surfaces);
     if (quality.shadows) cast_shadows(picture, light);
     target.begin();
-    glEnable(GL_DEPTH_TEST);
     draw_surfaces(picture.surfaces, shown);
     draw_background();
     glEnable(GL_BLEND);
@@ -335,7 +343,7 @@ void Renderer::Parts::draw(const Picture& picture) {
 std::vector<Bounds> Renderer::Parts::boxes(const std::vector<Surface>& surfaces) const {
     std::vector<Bounds> list;
     for (const Surface& surface : surfaces)
-        list.push_back(box_around(surface, models.at(surface.mesh).reach));
+        list.push_back(box_around(surface, models[std::size_t(surface.mesh)].reach));
     return list;
 }
 
@@ -345,16 +353,14 @@ void Renderer::Parts::upload(const std::vector<Surface>& surfaces) {
 }
 
 void Renderer::Parts::upload(const Surface& surface, Moving& to) const {
-    const DrawnMesh& model = models.at(surface.mesh);
+    const DrawnMesh& model = models[std::size_t(surface.mesh)];
     to.nodes = {};
     if (to.dents.count() > 0 || !surface.dents.empty()) to.dents.set(surface.dents);
     if (surface.positions.size() == model.vertices) {
-        assert(surface.normals.size() == surface.positions.size());
         to.positions.upload(surface.positions);
         to.normals.upload(surface.normals);
         return;
     }
-    assert(surface.positions.empty() && model.embedding);
     to.nodes = surface.gpu_nodes;
     if (to.nodes.positions != 0) return;
     to.positions.upload(with_room(surface.nodes.positions));
@@ -544,8 +550,9 @@ void Renderer::clear() {
 }
 
 int Renderer::add(const Mesh& mesh) {
+    check(mesh, "a mesh that is added to a Renderer");
     parts_->context.make_current();
-    const Visit visit;
+    const gl::Visit visit;
     parts_->models.push_back(model(mesh, parts_->openness.measure(mesh, parts_->programs().placed.depth)));
     return static_cast<int>(parts_->models.size()) - 1;
 }
@@ -567,18 +574,21 @@ int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
 
 int Renderer::add(const Image& image, Texels texels) {
     parts_->context.make_current();
+    const gl::Visit visit;
     parts_->maps.push_back(texture_of(image, texels));
     return static_cast<int>(parts_->maps.size()) - 1;
 }
 
 void Renderer::draw(const Picture& picture) {
+    parts_->check(picture);
     parts_->context.make_current();
-    const Visit visit;
+    const gl::Visit visit;
     parts_->draw(picture);
 }
 
 void Renderer::show(ivec2 corner) const {
     parts_->context.make_current();
+    const gl::Visit visit;
     parts_->target.show(corner, corner + ivec2(parts_->size.width, parts_->size.height));
 }
 
@@ -588,7 +598,10 @@ Image Renderer::image() const {
 }
 
 Culled Renderer::culled(int mesh) const {
-    const DrawnMesh& model = parts_->models.at(mesh);
+    if (mesh < 0 || std::size_t(mesh) >= parts_->models.size())
+        throw Error("no mesh of number " + std::to_string(mesh), "the Renderer",
+                    "use what Renderer::add gave");
+    const DrawnMesh& model = parts_->models[std::size_t(mesh)];
     return model.culling ? model.culling->count(parts_->context) : Culled{};
 }
 

@@ -69,7 +69,7 @@ class Renderer {
 
     /// Keeps what does not move of a mesh: its triangles, and how deep each vertex lies in a groove, which
     /// takes about a second for 100,000 triangles on a software driver. Returns the number by which
-    /// Surface::mesh names it.
+    /// Surface::mesh names it. Throws Error if the mesh is not sound (check()).
     int add(const Mesh& mesh);
 
     /// The same for a mesh that hangs on nodes: its vertices are mapped where they are drawn, on the GPU.
@@ -81,10 +81,11 @@ class Renderer {
     /// number by which Look names it. Throws Error if the driver has no images of that size.
     int add(const Image& image, Texels texels = Texels::colours);
 
-    /// Draws one frame. Same picture, same pixels. Odd pictures are drawn as well as they can be: nothing in
-    /// them, a camera that looks at its own eye, points that are not finite. For others who draw in the
-    /// context: framebuffers and viewport are afterwards bound as before, no sampler is, and depth test,
-    /// blending, culling and GL_FRAMEBUFFER_SRGB are off.
+    /// Draws one frame. Same picture, same pixels, whatever others have set in the context, who find it
+    /// afterwards as they left it (gl/visit.h). Odd pictures are drawn as well as they can be: nothing in
+    /// them, a camera that looks at its own eye, points that are not finite. Throws Error where a surface
+    /// names a mesh or a map that was not added, or has not as many places as that, or a line has no such
+    /// point.
     void draw(const Picture& picture);
 
     /// The last frame that was drawn; black before the first. Where Quality::scale is less than 1 it has
@@ -94,7 +95,7 @@ class Renderer {
     /// Puts the last frame into the framebuffer that is bound for drawing in the renderer's context, such as
     /// a window's, with its lower left corner at `corner`: in full size, so stretched where it has fewer
     /// pixels. That framebuffer has one sample a pixel; whether it is sRGB or not, it gets the bytes of
-    /// image(). Leaves GL_FRAMEBUFFER_SRGB off.
+    /// image(), also where a scissor is set.
     void show(ivec2 corner) const;
 
     /// What was left out of a mesh when it was last drawn by its nodes, not counting its shadow. Reads that

@@ -24,7 +24,6 @@ void ShadowMap::begin() const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size(), size());
     glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &far);
 }
 

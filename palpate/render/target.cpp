@@ -1,6 +1,7 @@
 #include "palpate/render/target.h"
 
 #include "palpate/base/error.h"
+#include "palpate/gl/visit.h"
 
 #include <fmt/format.h>
 
@@ -44,6 +45,7 @@ Target::Target(int width, int height, int samples)
     if (glCheckNamedFramebufferStatus(drawn_.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw Error(fmt::format("no memory for an image of {} x {} pixels", width, height), "OpenGL",
                     "choose a smaller one");
+    const gl::Visit visit;
     const GLfloat black[] = {0, 0, 0, 1};
     glClearNamedFramebufferfv(shown_.name(), GL_COLOR, 0, black);
 }
@@ -52,7 +54,7 @@ void Target::begin() const {
     glBindFramebuffer(GL_FRAMEBUFFER, drawn_.name());
     glViewport(0, 0, width(), height());
     glEnable(GL_FRAMEBUFFER_SRGB);
-    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
     const GLfloat far = 1;
     glClearNamedFramebufferfv(drawn_.name(), GL_DEPTH, 0, &far);
 }
@@ -80,7 +82,6 @@ void Target::show(ivec2 low, ivec2 high) const {
     GLint bound = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
     const bool stretched = high - low != ivec2(width(), height());
-    glDisable(GL_FRAMEBUFFER_SRGB);
     glBlitNamedFramebuffer(shown_.name(), static_cast<GLuint>(bound), 0, 0, width(), height(), low.x, low.y,
                            high.x, high.y, GL_COLOR_BUFFER_BIT, stretched ? GL_LINEAR : GL_NEAREST);
 }

@@ -29,7 +29,7 @@ class Target {
     Image read(const gl::Context& context) const;
 
     /// Copies that, byte for byte, into the framebuffer that is bound for drawing, stretched from the corner
-    /// `low` to `high`. Leaves GL_FRAMEBUFFER_SRGB off.
+    /// `low` to `high`. GL_FRAMEBUFFER_SRGB and the scissor must be off, as during a gl::Visit.
     void show(ivec2 low, ivec2 high) const;
 
     int width() const { return pixels_.width(); }

@@ -5,6 +5,7 @@
 #include "palpate/gl/context.h"
 #include "palpate/mesh/thinned.h"
 #include "palpate/render/renderer.h"
+#include "tests/gl/hostile.h"
 #include "tests/gl/with_context.h"
 #include "tests/render/gpu.h"
 #include "tests/render/pictures.h"
@@ -149,7 +150,8 @@ TEST_F(Qualities, ShowsTheBytesOfItsImage) {
             const Window window({size.width + 20, size.height + 20}, format);
             glEnable(GL_FRAMEBUFFER_SRGB);
             renderer_->show(corner);
-            EXPECT_FALSE(glIsEnabled(GL_FRAMEBUFFER_SRGB));
+            EXPECT_TRUE(glIsEnabled(GL_FRAMEBUFFER_SRGB));
+            glDisable(GL_FRAMEBUFFER_SRGB);
             const Image all = window.image();
             for (int y = 0; y < all.height; ++y)
                 for (int x = 0; x < all.width; ++x)
@@ -292,41 +294,94 @@ TEST_F(Qualities, QualitiesThatCannotBeAreErrors) {
     EXPECT_EQ(image(picture_).pixels, full.pixels);
 }
 
-// Whoever else draws in the context, such as a window's buttons.
-TEST_F(Qualities, OthersFindTheContextAsTheyNeedIt) {
-    const Window window(size, GL_RGBA8);
-    glViewport(1, 2, 3, 4);
-    const auto expect_sound = [&](const char* after) {
-        GLint drawn = 0, read = 0, viewport[4] = {};
-        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
-        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read);
-        glGetIntegerv(GL_VIEWPORT, viewport);
-        EXPECT_EQ(GLuint(drawn), window.name()) << after;
-        EXPECT_EQ(GLuint(read), window.name()) << after;
-        EXPECT_EQ(ivec4(viewport[0], viewport[1], viewport[2], viewport[3]), ivec4(1, 2, 3, 4)) << after;
-        for (GLenum off : {GL_FRAMEBUFFER_SRGB, GL_DEPTH_TEST, GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST})
-            EXPECT_FALSE(glIsEnabled(off)) << after << ": " << off;
-        for (GLenum unit = 0; unit < 8; ++unit) {
-            glActiveTexture(GL_TEXTURE0 + unit);
-            GLint sampler = 0;
-            glGetIntegerv(GL_SAMPLER_BINDING, &sampler);
-            EXPECT_EQ(sampler, 0) << after << ": " << unit;
-        }
-        glActiveTexture(GL_TEXTURE0);
+// Whoever else draws in the context: whatever has been set there, it is as it was afterwards, and the
+// pictures are the same to the bit.
+TEST_F(Qualities, AGuestLeavesTheContextAsItFindsIt) {
+    const Mesh sphere = ellipsoid(vec3(0.1f, 0.08f, 0.06f), 20);
+    const Body body = lattice({9, 9, 9}, 0.03f, {.youngs_modulus = 5000, .density = 1000});
+    std::vector<vec3> nodes;
+    for (vec3 p : body.positions) nodes.push_back(p - vec3(0.12f));
+    Image dots{4, 4, std::vector<std::uint8_t>(64, 200)};
+    for (std::size_t i = 0; i < dots.pixels.size(); i += 12) dots.pixels[i] = 30;
+    // All that a renderer does, in a new one each time.
+    const auto pictures = [&](auto visited) {
+        std::vector<Image> images;
+        const NodeBuffers on_gpu(nodes, nodes);
+        const Window window(size, GL_RGBA8);
+        visited([&] {
+            Renderer renderer(size, context());
+            Mesh textured = sphere;
+            for (vec3 p : sphere.positions) textured.uvs.push_back(4.0f * vec2(p));
+            compute_tangents(textured);
+            Body lying = body;
+            lying.positions = nodes;
+            Picture picture = seen_by(renderer);
+            picture.surfaces.push_back({.mesh = renderer.add(textured, embed(textured, lying)),
+                                        .look = {.colour_map = renderer.add(dots)},
+                                        .gpu_nodes = on_gpu.nodes});
+            const Dent dent{vec3(0, 0, 0.06f), 0.01f, 0.01f};
+            picture.surfaces.push_back(
+                {.mesh = renderer.add(textured, embed(textured, lying, Mapping::frames)),
+                 .nodes = {nodes, nodes},
+                 .dents = {&dent, 1}});
+            renderer.draw(picture);
+            images.push_back(renderer.image());
+            glBindFramebuffer(GL_DRAW_FRAMEBUFFER, window.name());
+            renderer.show({0, 0});
+            renderer.set(draft_quality);
+            renderer.resize({100, 80});
+            images.push_back(renderer.image());
+            renderer.draw(picture);
+            images.push_back(renderer.image());
+            renderer.clear();
+        });
+        images.push_back(window.image());
+        return images;
     };
-    picture_.surfaces[0].mesh = renderer_->add(thing_);
-    expect_sound("add");
-    renderer_->draw(picture_);
-    expect_sound("draw");
-    renderer_->show({0, 0});
-    expect_sound("show");
-    renderer_->image();
-    expect_sound("image");
-    renderer_->set(draft_quality);
-    renderer_->resize({100, 100});
-    expect_sound("set and resize");
-    renderer_->clear();
-    expect_sound("clear");
+    const std::vector<Image> alone = pictures([](auto draw) { draw(); });
+    const std::vector<Image> visited = pictures([](auto draw) {
+        const Hostile application;
+        const auto before = state_of_context();
+        draw();
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, application.framebuffer());
+        expect_untouched(before, "after a Renderer");
+    });
+    for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(visited[i].pixels, alone[i].pixels) << i;
+    EXPECT_NE(alone.front().pixels[0], alone.back().pixels[100]);  // they show something
+}
+
+TEST_F(Qualities, APictureOfWhatIsNotThereIsRefused) {
+    const Image full = image(picture_);
+    const auto refused = [&](const std::string& word, auto spoil) {
+        Picture odd = picture_;
+        spoil(odd);
+        try {
+            renderer_->draw(odd);
+            ADD_FAILURE() << word << ": drawn";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+        }
+    };
+    refused("a mesh that was not added", [](Picture& p) { p.surfaces[0].mesh = -1; });
+    refused("a mesh that was not added", [](Picture& p) { p.surfaces[0].mesh = 100; });
+    refused("a map that was not added", [](Picture& p) { p.surfaces[0].look.colour_map = 3; });
+    refused("a map that was not added", [](Picture& p) { p.surfaces[0].look.normal_map = 3; });
+    refused("than its mesh has vertices", [](Picture& p) { p.surfaces[0].positions = {}; });
+    refused("than its mesh has vertices",
+            [](Picture& p) { p.surfaces[0].normals = p.surfaces[0].normals.first(7); });
+    refused("a point that is not there", [](Picture& p) { p.wires[0].points = p.wires[0].points.first(1); });
+
+    const Body body = lattice(thing_, {.spacing = 0.03f, .material = {.youngs_modulus = 1e4f, .density = 1}});
+    const int hung = renderer_->add(thing_, embed(thing_, body, Mapping::interpolated));
+    const std::span<const vec3> nodes(body.positions);
+    for (const Nodes& few : {Nodes{}, Nodes{nodes.first(9), nodes}, Nodes{nodes, nodes.first(9)}})
+        refused("nodes", [&](Picture& p) { p.surfaces[0] = {.mesh = hung, .nodes = few}; });
+    EXPECT_THROW(renderer_->culled(100), Error);
+    EXPECT_THROW(renderer_->add(Image{2, 2, {1, 2, 3}}), Error);
+    Mesh broken = thing_;
+    broken.triangles[0].x = unsigned(thing_.positions.size());
+    EXPECT_THROW(renderer_->add(broken), Error);
+    EXPECT_EQ(image(picture_).pixels, full.pixels);
 }
 
 TEST(Thinned, FewerTrianglesKeepTheShape) {
