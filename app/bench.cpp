@@ -18,7 +18,7 @@ namespace {
 using namespace palpate;
 using namespace palpate::speed;
 
-struct Arguments {
+struct BenchArguments {
     std::vector<std::string> names;
     std::filesystem::path json, plot;
     int rounds = 15;
@@ -52,7 +52,7 @@ nlohmann::json described(const Timings& timings) {
     return {{"limits", limits}, {"cases", cases}, {"figures", figures}, {"driver", timings.driver}};
 }
 
-void run_benchmarks(const Arguments& arguments) {
+void run_benchmarks(const BenchArguments& arguments) {
     for (const auto& file : {arguments.json, arguments.plot})
         if (file.has_parent_path()) make_folder(file.parent_path());  // before the work, not after
     const unsigned cores = std::thread::hardware_concurrency();
@@ -86,7 +86,7 @@ void run_benchmarks(const Arguments& arguments) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<BenchArguments>();
     CLI::App* command = app.add_subcommand("bench", "Time Palpate against the limits of this machine");
     std::vector<std::string> names;
     for (const Benchmark& benchmark : benchmarks()) names.push_back(benchmark.name);

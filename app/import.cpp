@@ -18,13 +18,13 @@ namespace {
 
 using namespace palpate;
 
-struct Arguments {
+struct ImportArguments {
     std::string in, out, units, solid, report;
     std::vector<float> rotate;
     BodyRecipe recipe;
 };
 
-void write_report(const Arguments& arguments, const CleanSurface& surface, double seconds) {
+void write_report(const ImportArguments& arguments, const CleanSurface& surface, double seconds) {
     const vec3 size = bounds(surface.mesh).size();
     const nlohmann::ordered_json report = {{"in", arguments.in},
                                            {"out", arguments.out},
@@ -39,7 +39,7 @@ void write_report(const Arguments& arguments, const CleanSurface& surface, doubl
     write_text(arguments.report, report.dump(2) + "\n");
 }
 
-void import_file(Arguments& arguments) {
+void import_file(ImportArguments& arguments) {
     const double start = now();
     BodyRecipe& recipe = arguments.recipe;
     recipe.name = std::filesystem::path(arguments.in).filename().string();
@@ -69,7 +69,7 @@ void import_file(Arguments& arguments) {
 }  // namespace
 
 void add_import(CLI::App& app) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<ImportArguments>();
     BodyRecipe& recipe = arguments->recipe;
     recipe.largest = false;
     CLI::App* command = app.add_subcommand("import", "Make a clean surface of a mesh or a volume");

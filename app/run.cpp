@@ -16,7 +16,7 @@ namespace {
 
 using namespace palpate;
 
-struct Arguments {
+struct RunArguments {
     std::string scene, backend, integrator, size = "1280x720";
     std::optional<std::string> rest;
     std::vector<Change> changes;
@@ -83,7 +83,7 @@ void print_summary(const Report& report) {
 }
 
 // Whether anything is asked for that a window does not give: files, or an end.
-bool wants_files(const Arguments& arguments) {
+bool wants_files(const RunArguments& arguments) {
     const RunSettings& s = arguments.settings;
     for (const auto* file : {&s.video, &s.images, &s.report, &s.plot, &s.nodes, &s.surface, &s.sequence})
         if (!file->empty()) return true;
@@ -106,7 +106,7 @@ void replay(const std::string& file) {
                     "replay it on the same backend, with the same files and the same version");
 }
 
-void run_scene(Arguments& arguments) {
+void run_scene(RunArguments& arguments) {
     if (!arguments.backend.empty())
         arguments.changes.push_back("simulation.backend=\"" + arguments.backend + "\"");
     if (arguments.threads > 0)
@@ -139,7 +139,7 @@ void run_scene(Arguments& arguments) {
 }  // namespace
 
 void add_run(CLI::App& app) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<RunArguments>();
     RunSettings& settings = arguments->settings;
     CLI::App* command = app.add_subcommand(
         "run", "Open a scene in a window; or run it off screen, and write what is asked for");

@@ -10,14 +10,14 @@ build_packages=(
     libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver
     libglfw3-dev libimgui-dev fonts-dejavu-core                               # the viewer
     libtomlplusplus-dev libcli11-dev nlohmann-json3-dev                       # scenes, command line, reports
-    libgtest-dev                                                              # tests
 )
 data_packages=(mricron-data)  # the brain and the head
 film_packages=(ffmpeg)
 fuzz_packages=(clang libclang-rt-14-dev)           # scripts/fuzz
-check_packages=(  # the headers' pages; odd files; what palpate bench compares with; a display without a screen, and its events
-    doxygen assimp-testmodels libbullet-dev xvfb libxtst-dev
+check_packages=(  # tests; the headers' pages; odd files; what palpate bench compares with; a display without a screen, and its events
+    libgtest-dev doxygen assimp-testmodels libbullet-dev xvfb libxtst-dev
 )
+fresh_packages=(debootstrap git)                   # scripts/fresh
 
 need_packages() {
     local missing=() name
@@ -39,5 +39,6 @@ need_packages() {
         echo "The installation failed; the lines above say why (all of it: $log)." >&2
         exit 1
     fi
+    sed -n 's/^Fetched/  Fetched/p' "$log"
     rm -f "$log"
 }

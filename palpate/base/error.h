@@ -10,19 +10,10 @@ namespace palpate {
 /// In a step and in a haptic loop nothing throws: what they are given is looked at before they begin.
 class Error : public std::runtime_error {
  public:
-    Error(std::string_view what, std::string_view where, std::string_view remedy)
-        : std::runtime_error(
-              one_line(std::string(what) + " in " + std::string(where) + "; " + std::string(remedy))) {}
+    Error(std::string_view what, std::string_view where, std::string_view remedy);
 
     /// The line of an Error that was thrown in another process.
-    explicit Error(const std::string& line) : std::runtime_error(one_line(line)) {}
-
- private:
-    static std::string one_line(std::string text) {
-        for (char& c : text)
-            if (c == '\n' || c == '\r') c = ' ';
-        return text;
-    }
+    explicit Error(const std::string& line);
 };
 
 }  // namespace palpate

@@ -18,6 +18,28 @@ if(NOT EXISTS ${WORK}/pressed.ply)
     message(FATAL_ERROR "first_touch wrote nothing")
 endif()
 
+# All of it in one shared object, as plug-ins and Python modules are: so all of it is position-independent.
+file(WRITE ${WORK}/plugin/plugin.cpp "#include <palpate/palpate.h>
+bool works() { return palpate::names(palpate::Backend{}).size() > 1; }
+")
+file(WRITE ${WORK}/plugin/main.cpp "bool works();
+int main() { return works() ? 0 : 1; }
+")
+file(WRITE ${WORK}/plugin/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(plugin LANGUAGES CXX)
+find_package(palpate REQUIRED)
+add_library(plugin SHARED plugin.cpp)
+foreach(floor base mesh body scene solver touch gl render run)
+    target_link_libraries(plugin PRIVATE \$<LINK_LIBRARY:WHOLE_ARCHIVE,palpate::\${floor}>)
+endforeach()
+target_link_libraries(plugin PRIVATE palpate::palpate)
+add_executable(host main.cpp)
+target_link_libraries(host PRIVATE plugin)
+")
+run(${CMAKE_COMMAND} -G Ninja -S plugin -B shared -D CMAKE_PREFIX_PATH=${WORK}/prefix -D CMAKE_CXX_FLAGS=${FLAGS})
+run(${CMAKE_COMMAND} --build shared)
+run(shared/host)
+
 # That the rest compiles the build itself shows: here it counts that all targets are found from outside.
 file(WRITE ${WORK}/host/main.cpp "#include <palpate/base/files.h>
 int main() { palpate::write_text(\"said\", \"hello\"); }
@@ -32,6 +54,13 @@ target_link_libraries(whole PRIVATE palpate::palpate)
 if(TARGET palpate-app OR TARGET test_base)
     message(FATAL_ERROR \"more is built than was asked for\")
 endif()
+get_property(floors GLOBAL PROPERTY PALPATE_FLOORS)
+foreach(floor IN LISTS floors)
+    get_target_property(options \${floor} COMPILE_OPTIONS)
+    if(\"\${options}\" MATCHES Werror)
+        message(FATAL_ERROR \"a warning in \${floor} would stop its host\")
+    endif()
+endforeach()
 ")
 run(${CMAKE_COMMAND} -G Ninja -S host -B within -D CMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build within --target small)

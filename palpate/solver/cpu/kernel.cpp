@@ -205,16 +205,20 @@ struct GridNode : Eyes<AnyPass> {
     }
 
 #define LINKS Links::count
+#if HWY_TARGET == HWY_SCALAR  // for processors from before 2010: loops take the compiler a third of the time
+#define UNROLL
+#else
 #define UNROLL _Pragma("GCC unroll 32")
+#endif
 #define OWN_PULL
 #include "palpate/solver/node.inl"
-#include "palpate/solver/obstacles.inl"
 #undef OWN_PULL
 #undef UNROLL
 #undef LINKS
 };
 
-// Nodes with their springs written out.
+// Nodes with their springs written out. What acts on a node whatever its springs, obstacles and tools, is
+// made for these alone.
 struct TableNode : Eyes<Pass> {
     using WithPass = Pass;
     using Quiet = TableNode;  // gathering takes nearly all the time
@@ -307,13 +311,12 @@ FN void move(const Sweep& s, const typename At::WithPass& pass, const typename A
 }
 
 // Out of the obstacles. `was`: where the step began.
-template <class At>
-FN void push_out(const Sweep& s, const Pass& pass, const typename At::Constants& constants, int block,
-                 const Fields& was) {
+HWY_NOINLINE void push_out(const Sweep& s, int block, const Fields& was) {
     const Fields next = s.states[s.turn.next];
-    for_each_pack<At>(s, pass, constants, next, block, [&](At& eyes, std::ptrdiff_t i) INLINED {
+    const TableNode::Constants none(s.pass);
+    for_each_pack<TableNode>(s, s.pass, none, next, block, [&](TableNode& eyes, std::ptrdiff_t i) INLINED {
         const Pack3 before = load(was.x, was.y, was.z, i);
-        store_node(eyes.collide(load_node<At>(s.body, next, i), before), next, i);
+        store_node(eyes.collide(load_node<TableNode>(s.body, next, i), before), next, i);
     });
 }
 
@@ -392,7 +395,7 @@ void pass(const Sweep& s, int first_block, int end_block, Largest& largest) {
             Bounds& moved = s.moved[s.turn.next][b];
             moved = bounds_of(s.states[s.turn.next], block);
             if (near_obstacles(s, b, moved)) {
-                push_out<At>(s, s.pass, constants, b, was.fields);
+                push_out(s, b, was.fields);
                 moved = bounds_of(s.states[s.turn.next], block);
             }
         }
@@ -412,13 +415,12 @@ FN void add(Pack3 force, double seconds, dvec3& sum) {
     for (std::size_t n = 0; n < lanes(); ++n) sum += seconds * dvec3(x[n], y[n], z[n]);
 }
 
-template <class At>
 void give(const Sweep& s, int first_block, int end_block, Given* of_block) {
     const Fields at = s.states[s.turn.at];
-    const typename At::Constants constants(s.pass);
+    const TableNode::Constants none(s.pass);
     for (int b = first_block; b < end_block; ++b) {
         if (!touched(s, b, s.moved[s.turn.at][b])) continue;
-        for_each_pack<At>(s, s.pass, constants, at, b, [&](At& eyes, std::ptrdiff_t i) INLINED {
+        for_each_pack<TableNode>(s, s.pass, none, at, b, [&](TableNode& eyes, std::ptrdiff_t i) INLINED {
             const Pack3 p = load(at.x, at.y, at.z, i);
             for (int t = 0; t < s.pass.tips; ++t) {
                 const Pack3 force = eyes.tip_force(p, t);
@@ -481,9 +483,6 @@ auto of(Springs springs, Act act) {
 void pass_over(const Sweep& s, int first_block, int end_block, Largest& largest) {
     of(s.body.springs, [&]<class At>() { pass<At>(s, first_block, end_block, largest); });
 }
-void give_over(const Sweep& s, int first_block, int end_block, Given* of_block) {
-    of(s.body.springs, [&]<class At>() { give<At>(s, first_block, end_block, of_block); });
-}
 void normals_over(const Sweep& s, int first_block, int end_block, float* x, float* y, float* z) {
     of(s.body.springs, [&]<class At>() { normals<At>(s, first_block, end_block, x, y, z); });
 }
@@ -492,13 +491,7 @@ bool torn_over(const Sweep& s, int first_block, int end_block) {
 }
 
 Kernels all() {
-    return {hwy::TargetName(HWY_TARGET),
-            int(lanes()),
-            pass_over,
-            give_over,
-            find_bounds,
-            normals_over,
-            torn_over};
+    return {hwy::TargetName(HWY_TARGET), int(lanes()), pass_over, give, find_bounds, normals_over, torn_over};
 }
 
 }  // namespace palpate::cpu::HWY_NAMESPACE
