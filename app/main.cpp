@@ -1,5 +1,7 @@
 #include "app/commands.h"
 #include "palpate/base/files.h"
+#include "palpate/base/halt.h"
+#include "palpate/touch/emergency.h"
 
 #include <CLI/CLI.hpp>
 
@@ -17,17 +19,17 @@ int complain(const char* what) {
     return failed;
 }
 
-// Told to stop, the command leaves no half of a file behind, and ends as if it had not listened.
-void stop(int signal) {
-    palpate::remove_unfinished();
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
+// However it ends, the command leaves no half of a file behind.
+void tidy(palpate::Halt halt) noexcept {
+    if (halt == palpate::Halt::ended) palpate::remove_unfinished();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    for (int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
+    std::signal(SIGINT, SIG_DFL);  // ignored where a shell started this in the background, but not for it
+    palpate::let_go_at_halt();
+    palpate::on_halt(tidy);
     CLI::App app("Deforms detailed surfaces in real time and lets people feel them.", "palpate");
     app.require_subcommand(1);
     add_run(app);

@@ -44,9 +44,9 @@ TouchSettings without_limits(const Wall& wall, double stiffness, double most_dam
     TouchSettings settings;
     settings.feels = {{.stiffness = stiffness, .damping = wall.damping}};
     settings.direction_filter = 0;
-    settings.safety.small_force = std::numeric_limits<double>::infinity();
+    settings.safety.small_force = settings.safety.fastest_hand = std::numeric_limits<double>::max();
     settings.safety.calm = settings.safety.ramp = 0;
-    settings.safety.jump = settings.safety.fastest_hand = std::numeric_limits<double>::infinity();
+    settings.safety.jump = 1;
     settings.safety.most_damping = most_damping;
     return settings;
 }

@@ -31,7 +31,7 @@ constexpr KeyHelp keys[] = {
     {"R", "from the beginning"},
     {"F", "look at what you touched last, or at everything"},
     {"Home", "the view of the scene"},
-    {"Ctrl + Z, Ctrl + Y", "undo and redo pins and settings"},
+    {"Ctrl + Z, Ctrl + Y", "undo and redo pins and settings; undo a dent that stays"},
     {"B", "back to how it was two seconds ago"},
     {"W  L  N", "wireframe, lattice, normals as colours"},
     {"Ctrl + S", "save the scene with all that was changed"},

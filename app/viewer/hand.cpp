@@ -104,13 +104,28 @@ bool Hold::fits(const Experiment& experiment) const {
 // ---- hands that feel ----
 
 FeelingHand::FeelingHand(std::unique_ptr<Device> device, std::vector<Feel> feels, float radius, vec3 start,
-                         const std::vector<Skin>& skins)
-    : touch_(std::move(device), {.radius = radius, .feels = std::move(feels)}) {
+                         const std::vector<Skin>& skins, const Warmth& warmth)
+    : touch_(std::move(device), {.radius = radius, .feels = std::move(feels)}, warmth) {
     feel(skins, start);
     loop_.emplace(std::vector<Touch*>{&touch_});
 }
 
-void FeelingHand::feel(const std::vector<Skin>& skins) { feel(skins, felt().proxy); }
+void FeelingHand::set(std::vector<Feel> feels, float radius) {
+    touch_.set({.radius = radius, .feels = std::move(feels)});
+}
+
+void FeelingHand::begin_anew() {
+    expect_jump();
+    begins_anew_ = true;
+}
+
+// Nothing is left of the old surfaces only once the touch knows the new ones.
+void FeelingHand::feel(const std::vector<Skin>& skins) {
+    felt_ = touch_.felt();
+    feel(skins, felt_.proxy);
+    if (begins_anew_) touch_.begin_anew();
+    begins_anew_ = false;
+}
 
 std::string FeelingHand::granted() const { return loop_->granted().schedule; }
 
@@ -126,7 +141,7 @@ void FeelingHand::feel(const std::vector<Skin>& skins, vec3 around) {
     }
     std::vector<Touchable> surfaces;
     for (std::size_t s = 0; s < skins.size(); ++s)
-        surfaces.push_back({skins[s].positions, *skins[s].triangles, velocities[s]});
+        surfaces.push_back({skins[s].positions, *skins[s].triangles, velocities[s], skins[s].is_sheet});
     touch_.feel(Patch(surfaces, around, beyond, time));
     before_.resize(skins.size());
     for (std::size_t s = 0; s < skins.size(); ++s) before_[s] = skins[s].positions;

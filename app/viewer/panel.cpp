@@ -293,7 +293,7 @@ void show_readings(const Viewer& viewer) {
         ImGui::Text("period 99.9 %% %.2f ms, longest %.2f ms", 1000 * timing.periods.quantile(0.999),
                     1000 * timing.periods.longest());
         ImGui::TextColored(quiet, "scheduled: %s", hand->granted().c_str());
-        const Felt felt = hand->felt();
+        const Felt& felt = hand->felt();
         ImGui::Text("force %.2f N", double(glm::length(felt.force)));
         if (felt.held != Held::no) ImGui::TextColored(quiet, "%s", std::string(name_of(felt.held)).c_str());
     }
@@ -319,7 +319,7 @@ void show_steering(Viewer& viewer) {
     ImGui::SameLine();
     if (ImGui::Button("restart")) viewer.restart();
     ImGui::SameLine();
-    ImGui::BeginDisabled(!experiment.can_undo());
+    ImGui::BeginDisabled(!viewer.can_undo());
     if (ImGui::Button("undo")) viewer.undo();
     ImGui::EndDisabled();
     ImGui::SameLine();

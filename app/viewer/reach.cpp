@@ -12,6 +12,7 @@ namespace {
 
 constexpr float away = 0.02f;       // m: so far before a surface a hand waits that does not dent it
 constexpr float dent_depth = 0.6f;  // in radii of its tip
+constexpr float jump = 0.04f;       // m: no person moves a hand so far from one picture to the next
 
 // Side by side the same point is in both halves.
 vec2 in_view(vec2 pixel, ivec2 view, ivec2 whole) {
@@ -24,6 +25,7 @@ vec2 in_view(vec2 pixel, ivec2 view, ivec2 whole) {
 void Viewer::look_with_mouse() {
     if (!mouse_) return;
     looked_ = view_size();
+    pointed_.reset();
     mouse_->look(camera(), looked_);
 }
 
@@ -134,13 +136,25 @@ vec3 Viewer::follow_pointer() {
     }
     if (!mouse_) return ray.at(depth_);
     // A hand that dents follows the surface under the pointer; where there is none it stays as deep.
-    if (const auto hit = pick(ray, experiment_->play().skins())) {
-        const float goal = hit->way * glm::dot(ray.along, forward) + (denting_ ? push_ : -away);
-        notches_ = (goal - glm::distance(camera().look_at, camera().eye)) / MouseSettings{}.notch;
-    }
-    mouse_->point({.time = now(), .position = pixel, .buttons = denting_ ? 1u : 0u, .wheel = notches_});
-    const float depth = glm::distance(camera().look_at, camera().eye) + notches_ * MouseSettings{}.notch;
-    return ray.at(depth / glm::dot(ray.along, forward));
+    const float slant = glm::dot(ray.along, forward);
+    const float middle = glm::distance(camera().look_at, camera().eye), notch = MouseSettings{}.notch;
+    auto event = [&](float depth, bool pressed) {
+        return PointerEvent{now(), pixel, pressed ? 1u : 0u, (depth - middle) / notch};
+    };
+    const auto hit = pick(ray, experiment_->play().skins());
+    const float before = hit ? hit->way * slant - away : mouse_depth_;  // the surface
+    const float goal = denting_ && hit ? before + away + push_ : before;
+    const vec3 place = ray.at(goal / slant);
+    // Where it only hovers, or goes farther than a hand does, it is there at once: before the surface, and
+    // not through what lies between.
+    const bool hovers = !denting_ && pointed_ != pixel;
+    const bool jumps = denting_ && glm::distance(place, mouse_place_) > std::max(jump, 4 * options.tip);
+    if (hovers || jumps) mouse_->place(event(before, false));
+    if (!hovers) mouse_->point(event(goal, denting_));
+    pointed_ = pixel;
+    mouse_depth_ = goal;
+    mouse_place_ = place;
+    return place;
 }
 
 void Viewer::wheel(float notches) {
@@ -198,11 +212,17 @@ void Viewer::make_feeling_hand() {
     if (wanted)
         of = {options.device, options.device_file, options.tip, feels_of(experiment_->scene()),
               experiment_->shapes()};
-    const bool fits = feeling_ && feeling_of_ == of;
-    if (wanted && fits) return;
     if (!wanted && !feeling_) return;
-    feeling_.reset();
-    mouse_ = nullptr;
+    if (wanted && feeling_ && feeling_of_ == of) return;
+    const bool stays = wanted && feeling_ && feeling_of_.device == of.device && feeling_of_.file == of.file &&
+                       feeling_of_.feels.size() == of.feels.size();
+    if (stays) {
+        feeling_->set(of.feels, of.tip);
+        if (feeling_of_.shapes != of.shapes) feeling_->begin_anew();
+        feeling_of_ = std::move(of);
+        return;
+    }
+    drop_feeling_hand();
     denting_ = false;  // a new one begins before the surface, not in it
     if (!wanted) return;
     attempt([&] {
@@ -214,10 +234,12 @@ void Viewer::make_feeling_hand() {
         vec3 start = settings.path.empty() ? camera().look_at : settings.path.front().position;
         if (options.device == DeviceKind::mouse) {
             mouse_ = static_cast<Mouse*>(device.get());
+            mouse_depth_ = glm::distance(camera().look_at, camera().eye);
+            pointed_.reset();
             start = follow_pointer();  // so that it begins there and does not come from elsewhere
         }
         feeling_ = std::make_unique<FeelingHand>(std::move(device), of.feels, of.tip, start,
-                                                 experiment_->play().skins());
+                                                 experiment_->play().skins(), warmth_);
     });
     if (!feeling_) {  // and it is said why
         mouse_ = nullptr;
@@ -226,6 +248,23 @@ void Viewer::make_feeling_hand() {
     }
     feeling_of_ = std::move(of);
     looked_ = view_size();
+}
+
+// Its motors cool down while there is none.
+void Viewer::drop_feeling_hand() {
+    if (feeling_) warmth_ = feeling_->warmth();
+    feeling_.reset();
+    mouse_ = nullptr;
+    strokes_.clear();
+}
+
+// The latest that is still there, if no change of the scene came after it.
+const Viewer::Stroke* Viewer::last_dent() const {
+    const int last = feeling_ ? feeling_->felt().last_stroke : 0;
+    for (auto stroke = strokes_.rbegin(); stroke != strokes_.rend(); ++stroke)
+        if (stroke->number <= last)
+            return stroke->changes >= experiment_->changes_made() ? &*stroke : nullptr;
+    return nullptr;
 }
 
 // A device that is no mouse does what is chosen too: it presses wherever it is, or takes hold of what it
@@ -260,9 +299,11 @@ std::vector<Hold> Viewer::holds() const {
 
 void Viewer::start_denting() {
     if (!mouse_) return;
-    denting_ = true;
+    follow_pointer();  // it begins before the surface,
+    denting_ = true;   // and goes in
     push_ = dent_depth * options.tip;
     drag_ = Drag::hold;
+    strokes_.push_back({feeling_->begin_stroke(), experiment_->changes_made()});
     follow_pointer();
 }
 

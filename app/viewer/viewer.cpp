@@ -152,8 +152,7 @@ void Viewer::take_import() {
 
 void Viewer::begin(Prepared prepared) {
     auto experiment = std::make_unique<Experiment>(std::move(prepared), &context_);
-    feeling_.reset();
-    mouse_ = nullptr;
+    drop_feeling_hand();
     let_go();
     beside_.reset();
     compared_ = {};
@@ -197,6 +196,12 @@ void Viewer::change(const std::vector<Change>& changes, bool again) {
 }
 
 void Viewer::undo() {
+    if (const Stroke* stroke = last_dent()) {
+        feeling_->forget(stroke->number);
+        strokes_.resize(std::size_t(stroke - strokes_.data()));
+        moved_ = now();
+        return say("the dent is gone");
+    }
     if (experiment_ && experiment_->can_undo()) alter([&] { experiment_->undo(); }, "undone");
 }
 
@@ -208,12 +213,15 @@ void Viewer::restart() {
     replay_.reset();
     let_go();
     alter([&] { experiment_->restart(); }, "from the beginning");
+    strokes_.clear();
+    if (feeling_) feeling_->begin_anew();
 }
 
 void Viewer::return_to_good() {
     if (!experiment_ || !experiment_->can_return()) return;
     if (!replay_) let_go();
     alter([&] { experiment_->return_to_good(); }, "as it was a moment ago");
+    if (feeling_) feeling_->expect_jump();
 }
 
 void Viewer::step_once() {
@@ -329,7 +337,7 @@ std::vector<Viewer::Arrow> Viewer::arrows() const {
         (hold.presses() ? press : pull) += hold.presses() ? 1 : hold.pulls();
     }
     if (feeling_ && options.mode == Mode::dent) {
-        const Felt felt = feeling_->felt();
+        const Felt& felt = feeling_->felt();
         if (glm::length(felt.force) > 0) arrows.push_back({felt.proxy, felt.force});
     }
     return arrows;
@@ -347,7 +355,7 @@ Traces Viewer::traces() const {
         traces.points.insert(traces.points.end(), {hold.held(experiment_->play()), hold.place()});
     }
     if (!feeling_ || options.mode != Mode::dent) return traces;
-    const Felt felt = feeling_->felt();
+    const Felt& felt = feeling_->felt();
     // A small one, or it would hide the dent; the controls draw a ring as large as the tip.
     traces.balls.push_back({felt.proxy, 0.25f * options.tip, proxy_colour});
     if (glm::distance(felt.hand, felt.proxy) > 0.05f * options.tip) {

@@ -107,7 +107,9 @@ class Viewer {
     void pause() { options.paused = !options.paused; }
     void step_once();
     void restart();
+    /// The latest change of the scene, or the latest dent that stayed.
     void undo();
+    bool can_undo() const { return last_dent() || (experiment_ && experiment_->can_undo()); }
     void redo();
     void return_to_good();
     /// Changes of the scene. What cannot be is said in message(), and nothing changes.
@@ -171,6 +173,11 @@ class Viewer {
         int shapes = 0;  // of the experiment
         bool operator==(const HandSettings&) const = default;
     };
+    // A dent that was pressed in, from the pointer's press to its release.
+    struct Stroke {
+        int number;           // of the feeling hand
+        std::size_t changes;  // how many of the scene came before it
+    };
     struct Drawing {
         Look3d look;
         ivec2 size = ivec2(0);
@@ -189,6 +196,8 @@ class Viewer {
     void look_with_mouse();
     vec3 follow_pointer();  // where the hand is then
     void make_feeling_hand();
+    void drop_feeling_hand();
+    const Stroke* last_dent() const;
     void follow_device();
     void feel();
     void one_frame();
@@ -228,10 +237,14 @@ class Viewer {
     std::unique_ptr<FeelingHand> feeling_;
     Mouse* mouse_ = nullptr;   // feeling_'s, if that is its device
     HandSettings feeling_of_;  // what feeling_ was made of
-    ivec2 looked_ = ivec2(0);  // the size of the picture that mouse_ knows
+    Warmth warmth_;            // of the motors of the one before
+    std::vector<Stroke> strokes_;
+    std::optional<vec2> pointed_;  // the pixel that mouse_ was told of in this view
+    ivec2 looked_ = ivec2(0);      // the size of the picture that mouse_ knows
     bool denting_ = false, touched_ = false;
     float push_ = 0;              // m, how deep the pointer dents
-    float notches_ = 0;           // of the mouse's wheel
+    float mouse_depth_ = 0;       // m from the eye, along the view, of where mouse_ was told to be,
+    vec3 mouse_place_ = vec3(0);  // m, and that place
     std::vector<vec3> selected_;  // m, around what was last taken hold of
 
     std::unique_ptr<Film> film_;

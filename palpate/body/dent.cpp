@@ -50,6 +50,8 @@ vec3 dented_normal(std::span<const Dent> dents, vec3 place, vec3 normal) {
     return Text{dents}.dented_normal(place, normal);
 }
 
+double deepest_dent(double width) { return 1.2 * width; }
+
 float furthest(std::span<const Dent> dents) {
     float sum = 0;
     for (const Dent& dent : dents) sum += acts(dent) ? std::abs(dent.depth) : 0;

@@ -23,6 +23,17 @@ bool comes_near(const Touchable& surface, uvec3 t, vec3 centre, float radius) {
     return !(glm::distance(middle, centre) > radius + size);
 }
 
+void check(const Touchable& surface) {
+    const std::size_t count = surface.positions.size();
+    if (!surface.velocities.empty() && surface.velocities.size() != count)
+        throw Error("another number of velocities than of vertices", "a surface to touch",
+                    "give one for each, or none");
+    for (uvec3 t : surface.triangles)
+        if (t.x >= count || t.y >= count || t.z >= count)
+            throw Error("a triangle of vertices that are not there", "a surface to touch",
+                        "give it its own positions");
+}
+
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 vec3 sane(vec3 velocity) {
@@ -41,14 +52,9 @@ Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, dou
       mesh_(std::make_unique<Mesh>()) {
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         const Touchable& surface = surfaces[s];
-        if (!surface.velocities.empty() && surface.velocities.size() != surface.positions.size())
-            throw Error("speeds of another number of vertices", "a surface to touch",
-                        "give every vertex one, or none");
+        check(surface);
         for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
             const uvec3 triangle = surface.triangles[t];
-            if (std::max({triangle.x, triangle.y, triangle.z}) >= surface.positions.size())
-                throw Error("a triangle with a vertex that is not there", "a surface to touch",
-                            "count vertices from 0");
             if (!comes_near(surface, triangle, centre, radius)) continue;
             const bool whole = is_finite(surface.positions[triangle.x]) &&
                                is_finite(surface.positions[triangle.y]) &&

@@ -36,7 +36,7 @@ class Patch {
 
     /// All triangles of the surfaces that come within `radius` of `centre`. It is true at `time` (s, on the
     /// clock of the loop that asks it); after that each vertex goes on at its velocity, but for no longer
-    /// than `longest_guess`.
+    /// than `longest_guess`. Throws Error if a surface names vertices that it does not have.
     explicit Patch(std::span<const Touchable> surfaces, vec3 centre = vec3(0),
                    float radius = std::numeric_limits<float>::infinity(), double time = 0);
 

@@ -187,7 +187,7 @@ void Experiment::carry_over(Made& made) {
     made.play->restore(states);
     if (!fits(made)) return;
     made.play->take_tools(*play_);
-    if (feels_of(*made.scene) == feels_of(*scene_)) made.play->take_probes(*play_);
+    made.play->take_probes(*play_);
 }
 
 // Whether what its tools touch and hold is what they did.

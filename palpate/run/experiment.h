@@ -62,6 +62,7 @@ class Experiment {
     void change(const std::vector<Change>& changes, bool again = false);
 
     bool can_undo() const { return at_ > 0; }
+    std::size_t changes_made() const { return at_; }  // that undo() could take back
     bool can_redo() const { return at_ + 1 < history_.size(); }
     void undo();
     void redo();

@@ -31,6 +31,11 @@ Report::Body describe(const Model& model) {
     return body;
 }
 
+// What a cage carries may be open; every other surface that is no cloth encloses a volume.
+bool is_sheet(const BodyRecipe& recipe, const Mesh& surface) {
+    return recipe.is_cloth() || (recipe.cage && soundness(surface).open_edges > 0);
+}
+
 // Where the nodes of a prescribed motion shall be at a time.
 std::vector<vec3> places(const MovedNodes& moved, const Path& path, const Body& body, double time) {
     const Pose at = pose(path, time);
@@ -115,10 +120,15 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
         report.tools.emplace_back().name = tool.name;
     }
     const std::size_t models = made.models.size();
-    for (std::size_t m = 0; m < models; ++m) skins_[m].triangles = &made.models[m].surface.triangles;
+    for (std::size_t m = 0; m < models; ++m) {
+        const Mesh& surface = made.models[m].surface;
+        skins_[m].triangles = &surface.triangles;
+        skins_[m].is_sheet = is_sheet(scene.bodies[m], surface);
+    }
     for (std::size_t s = 0; s < made.stills.size(); ++s) {
         const Mesh& surface = made.stills[s].surface;
-        skins_[models + s] = {surface.positions, surface.normals, &surface.triangles};
+        skins_[models + s] = {surface.positions, surface.normals, &surface.triangles,
+                              is_sheet(scene.surfaces[s], surface)};
     }
     velocities_.resize(skins_.size());
     if (!on_gpu(simulation.backend)) map();
@@ -171,8 +181,11 @@ void Play::take_tools(const Play& from) {
 }
 
 void Play::take_probes(Play& from) {
-    for (std::size_t t = 0; t < handles_.size(); ++t)
-        if (std::holds_alternative<Probe>(from.handles_[t])) handles_[t] = std::move(from.handles_[t]);
+    for (std::size_t t = 0; t < handles_.size(); ++t) {
+        if (!std::holds_alternative<Probe>(from.handles_[t])) continue;
+        handles_[t] = std::move(from.handles_[t]);
+        std::get<Probe>(handles_[t]).set(feels_of(scene_));
+    }
 }
 
 std::size_t Play::memory() const {

@@ -22,6 +22,11 @@ std::vector<Feel> feels_of(const Scene& scene) {
 
 Probe::Probe(const ToolRecipe& recipe, std::vector<Feel> feels) : recipe_(recipe), feels_(std::move(feels)) {}
 
+void Probe::set(std::vector<Feel> feels) {
+    feels_ = std::move(feels);
+    if (touch_) touch_->set({.radius = recipe_.radius, .feels = feels_});
+}
+
 void Probe::begin(double time, const std::vector<Skin>& skins) {
     if (recipe_.from) origin_ = brought_to_touch(recipe_, skins);
     Path path = recipe_.path;
@@ -47,9 +52,7 @@ void Probe::advance(double time, double seconds, const std::vector<Skin>& skins,
         sum += glm::length(felt_.force);
     }
     if (count > 0) force_ = sum / double(count);
-    depth_ = 0;
-    for (int i = felt_.lasting; i < felt_.count; ++i)
-        depth_ = std::max(depth_, double(felt_.dents[std::size_t(i)].depth));
+    depth_ = felt_.depth;
 }
 
 // All of what stands still, once and for all; of what moves the neighbourhood.
@@ -58,7 +61,7 @@ Patch Probe::patch(double time, const std::vector<Skin>& skins,
     std::vector<Touchable> surfaces;
     bool anything_moves = false;
     for (std::size_t s = 0; s < skins.size(); ++s) {
-        surfaces.push_back({skins[s].positions, *skins[s].triangles, velocities[s]});
+        surfaces.push_back({skins[s].positions, *skins[s].triangles, velocities[s], skins[s].is_sheet});
         anything_moves |= !velocities[s].empty();
     }
     if (!anything_moves) return Patch(surfaces);

@@ -19,6 +19,9 @@ class Probe {
 
     bool is_there(double time) const { return within(recipe_.path, time); }
 
+    /// Surfaces that feel another way now, as many as before; its device stays open and its motors as warm.
+    void set(std::vector<Feel> feels);
+
     /// From `time` on, at which it is there. At the path's first time its tip is brought to the surface that
     /// it shall touch. `moving`: the skins have moved since the last call, at these velocities, m/s (one a
     /// vertex; none for a skin that stands still).

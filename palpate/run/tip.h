@@ -11,6 +11,7 @@ namespace palpate {
 struct Skin {
     std::vector<vec3> positions, normals;
     const std::vector<uvec3>* triangles;  // of the surface at rest
+    bool is_sheet = false;                // it encloses nothing, and is felt from both sides
 };
 
 /// A tool's tip on its way along a scripted path.

@@ -32,6 +32,18 @@ std::vector<double> numbers(const std::string& row) {
 
 }  // namespace
 
+void check(const Path& path, const std::string& whose) {
+    if (path.empty()) throw Error("no waypoint", whose, "give it a path of one at least");
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const vec3 p = path[i].position, r = path[i].rotation;
+        if (!std::isfinite(path[i].time) || !std::isfinite(p.x + p.y + p.z + r.x + r.y + r.z))
+            throw Error(fmt::format("waypoint {} is not a number", i + 1), whose, "give finite ones");
+        if (i > 0 && !(path[i].time > path[i - 1].time))
+            throw Error(fmt::format("waypoint {} is not later than the one before", i + 1), whose,
+                        "give them in the order of time");
+    }
+}
+
 bool within(const Path& path, double time) {
     return !path.empty() && time >= path.front().time && time <= path.back().time;
 }

@@ -21,6 +21,10 @@ struct Waypoint {
 /// degrees. Before the first and after the last it stands still.
 using Path = std::vector<Waypoint>;
 
+/// Throws Error if there is no waypoint, if one is not finite, or if time does not rise; `whose` is for the
+/// message.
+void check(const Path& path, const std::string& whose);
+
 bool within(const Path& path, double time);
 vec3 position(const Path& path, double time);
 

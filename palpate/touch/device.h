@@ -13,6 +13,9 @@ struct Hand {
     unsigned buttons = 0;  // a bit each, the first the lowest
     unsigned placed = 0;   // goes up by one when the position jumps because the device, a clutch or a scale
                            // was set anew and not because the hand went there: no force bridges such a jump
+    // What a scale that was set since spec() was asked has changed: so many times as much a newton of the
+    // scene is at the device now, and a metre of the device in the scene. Above 0; 1 where there is none.
+    float forces = 1, motion = 1;
 };
 
 /// What a device can do.
@@ -41,11 +44,12 @@ class Device {
     virtual bool read(double now, Hand& hand) noexcept = 0;
 
     /// The force on the hand until the next call, N, in the scene, finite. Like read(); false if the device
-    /// is gone.
+    /// did not take it. Then it is stopped, at each tick until it does.
     virtual bool write(vec3 force) noexcept = 0;
 
     /// No force from now on until the next write(). May come from any thread at any time, also while read()
-    /// or write() hangs in another, more than once, and when the device is gone.
+    /// or write() hangs in another, more than once, and when the device is gone; and from a handler of
+    /// signals, in the middle of read() or write() on the same thread, so it is async-signal-safe.
     virtual void stop() noexcept = 0;
 };
 

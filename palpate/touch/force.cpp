@@ -5,6 +5,19 @@
 #include <algorithm>
 
 namespace palpate {
+namespace {
+
+// Along a normal on the side that is touched.
+double lasting_depth(std::span<const Dent> lasting, const Contact& contact, dvec3 normal) {
+    const double side = contact.behind ? -1 : 1;
+    return std::max(side * double(depth_at(lasting, vec3(contact.point), vec3(side * normal))), 0.0);
+}
+
+}  // namespace
+
+double lasting_depth(std::span<const Dent> lasting, const Contact& contact) {
+    return lasting_depth(lasting, contact, contact.normal);
+}
 
 dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel> feels,
             std::span<const Dent> lasting) {
@@ -19,11 +32,13 @@ dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel
     const Feel& feel = feels[std::size_t(most->surface)];
     const dvec3 normal = sunk / depth;
 
-    const double left = depth - double(depth_at(lasting, vec3(most->point), vec3(normal)));
+    const double there = lasting_depth(lasting, *most, normal), left = depth - there;
     if (!(left > 0)) return dvec3(0);
     const double going_out = glm::dot(velocity - most->velocity, normal);
     const double push = std::max(feel.stiffness * left - feel.damping * going_out, 0.0);
-    const dvec3 turned(dented_normal(lasting, vec3(most->point), vec3(normal)));
+    const double side = most->behind ? -1 : 1;
+    const dvec3 turned =
+        there > 0 ? side * dvec3(dented_normal(lasting, vec3(most->point), vec3(side * normal))) : normal;
     const dvec3 pushed = push / std::max(glm::dot(turned, normal), 0.1) * turned;
 
     dvec3 along = feel.stiffness * (proxy.position() - hand - sunk);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double slowest = 250, fastest = 4000;  // Hz
 constexpr double watch_every = 0.001;            // s
+constexpr double longest_spin = 0.001;           // s: more would leave nothing of a processor to others
 
 }  // namespace
 
@@ -21,7 +22,15 @@ TouchLoop::TouchLoop(std::vector<Touch*> hands, LoopSettings settings)
     if (!(settings.rate >= slowest && settings.rate <= fastest))
         throw Error(fmt::format("a rate of {} Hz", settings.rate), "the haptic loop",
                     fmt::format("choose one from {} to {}", slowest, fastest));
-    for (Touch* hand : hands_) paced_ |= hand->device().paces;
+    if (!(settings.spin >= 0 && settings.spin <= longest_spin))
+        throw Error(fmt::format("a spin of {} s", settings.spin), "the haptic loop",
+                    fmt::format("choose one from 0 to {}", longest_spin));
+    for (Touch* hand : hands_) {
+        if (!hand) throw Error("a hand that is not there", "the haptic loop", "make it before");
+        paced_ |= hand->device().paces;
+    }
+    if (!paced_)
+        for (Touch* hand : hands_) hand->expect_rate(settings.rate);
     watchdog_ = std::thread([this] { watch(); });  // before there is anything to watch
     try {
         loop_ = std::thread([this] { run(); });

@@ -12,7 +12,7 @@ namespace palpate {
 
 struct LoopSettings {
     double rate = 1000;    // Hz, from 250 to 4000; a device that paces has its own
-    double spin = 100e-6;  // s: the last part of each wait, during which it does not sleep
+    double spin = 100e-6;  // s: the last part of each wait, during which it does not sleep; up to 1 ms
 };
 
 /// How a loop has kept time.
@@ -29,7 +29,7 @@ struct LoopTiming {
 /// Both end with this object, and the hands' devices are stopped. The hands must outlive it.
 class TouchLoop {
  public:
-    /// Throws Error if the rate is none.
+    /// Throws Error if the rate or the spin is out of bounds, or if one of the hands is not there.
     explicit TouchLoop(std::vector<Touch*> hands, LoopSettings settings = {});
     ~TouchLoop();
     TouchLoop(const TouchLoop&) = delete;

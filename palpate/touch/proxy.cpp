@@ -128,7 +128,8 @@ Touching touching(Near& near, dvec3 centre, double radius, dvec3 wanted) {
         if (at.distance > reach) return;
         const dvec3 velocity = at.weights.x * face.velocities[0] + at.weights.y * face.velocities[1] +
                                at.weights.z * face.velocities[2];
-        found.add({at.point, at.normal, velocity, face.surface, face.triangle, at.weights, 0}, wanted);
+        found.add({at.point, at.normal, velocity, face.surface, face.triangle, at.weights, 0, high < 0},
+                  wanted);
     });
     return found;
 }

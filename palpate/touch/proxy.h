@@ -18,6 +18,10 @@ struct Contact {
     dvec3 weights;   // and where in that: of its corners
     double depth;  // m, how far the hand is behind the surface along the normal; the depths times the normals
                    // are what leads from the hand to where the proxy would be without friction
+    bool behind = false;  // of a sheet: whether it is touched from its other side
+
+    /// The side that its triangles look to.
+    dvec3 front() const { return behind ? -normal : normal; }
 };
 
 /// A ball that follows the hand but never enters a surface (the god-object of Zilles and Salisbury 1995, the
@@ -40,6 +44,7 @@ class Proxy {
 
     dvec3 position() const { return place_; }  // m, of its centre
     double radius() const { return radius_; }
+    void set_radius(double radius) { radius_ = radius; }  // m; from the next call on
     bool slips() const { return slips_; }
 
     /// Where it is stopped, with planes that are not redundant; none if it is where the hand is.

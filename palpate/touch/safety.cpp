@@ -2,16 +2,22 @@
 
 #include "palpate/base/error.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate {
 namespace {
 
 bool is_finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+bool is_factor(float factor) { return factor > 0 && std::isfinite(factor); }
+
 bool is_sound(dvec3 wanted, const Hand& hand) {
-    return is_finite(wanted) && is_finite(dvec3(hand.position)) && std::isfinite(hand.time);
+    return is_finite(wanted) && is_finite(dvec3(hand.position)) && std::isfinite(hand.time) &&
+           is_factor(hand.forces) && is_factor(hand.motion);
 }
 
 dvec3 no_longer_than(double most, dvec3 v) {
@@ -21,23 +27,69 @@ dvec3 no_longer_than(double most, dvec3 v) {
 
 }  // namespace
 
-Safety::Safety(const DeviceSpec& device, const SafetySettings& settings)
-    : settings_(settings),
-      peak_(settings.peak_force > 0 ? std::min(settings.peak_force, double(device.peak_force))
-                                    : double(device.peak_force)),
-      lasting_(std::min(peak_,
-                        settings.lasting_force > 0 ? settings.lasting_force : double(device.lasting_force))) {
-    const bool sound = std::isfinite(peak_) && peak_ > 0 && lasting_ > 0 && settings.fall > 0 &&
-                       settings.fade > 0 && settings.fresh >= 0 && settings.small_force >= 0 &&
-                       settings.lost > 0;
-    if (!sound)
-        throw Error("limits of force or of time that are not above zero", device.name,
-                    "give finite ones in its DeviceSpec and in SafetySettings");
+void check(const SafetySettings& settings, const std::string& device) {
+    constexpr double any = std::numeric_limits<double>::max();
+    constexpr double second = 1;  // no force goes on for longer after all else has failed
+    struct Setting {
+        const char* name;
+        double value;
+        bool may_be_zero = true;
+        double most = any;
+    };
+    const SafetySettings& s = settings;
+    const Setting all[] = {{"peak_force", s.peak_force},
+                           {"lasting_force", s.lasting_force},
+                           {"warm_up", s.warm_up},
+                           {"fall", s.fall, false, second},
+                           {"small_force", s.small_force},
+                           {"calm", s.calm},
+                           {"ramp", s.ramp},
+                           {"fresh", s.fresh, true, second},
+                           {"fade", s.fade, false, second},
+                           {"fastest_hand", s.fastest_hand, false},
+                           {"jump", s.jump, true, 1},
+                           {"lost", s.lost, false, second},
+                           {"store", s.store},
+                           {"most_damping", s.most_damping}};
+    static_assert(sizeof all / sizeof all[0] * sizeof(double) == sizeof settings, "each setting is checked");
+    for (const Setting& one : all)
+        if (!(one.may_be_zero ? one.value >= 0 : one.value > 0) || !(one.value <= one.most))
+            throw Error(
+                fmt::format("SafetySettings::{} is {}", one.name, one.value), device,
+                fmt::format("give it {} zero{}", one.may_be_zero ? "at least" : "above",
+                            one.most < any ? fmt::format(", and {} at most", one.most) : ", and finite"));
+}
+
+void check(const DeviceSpec& device) {
+    const std::pair<const char*, float> all[] = {{"peak_force", device.peak_force},
+                                                 {"lasting_force", device.lasting_force},
+                                                 {"stiffness", device.stiffness}};
+    for (const auto& [name, value] : all)
+        if (!(value > 0) || !std::isfinite(value))
+            throw Error(fmt::format("DeviceSpec::{} is {}", name, value), device.name,
+                        "its driver has to give a finite one above zero");
+}
+
+Safety::Safety(const DeviceSpec& device, const SafetySettings& settings, const Warmth& warmth)
+    : device_peak_(device.peak_force), device_lasting_(device.lasting_force), warmth_(warmth) {
+    check(device);
+    check(settings, device.name);
+    const bool known = warmth.square >= 0 && std::isfinite(warmth.square) && std::isfinite(warmth.time);
+    if (!known) throw Error("a warmth that is no number", device.name, "give what Felt::warmth said");
+    set(settings);
+}
+
+void Safety::set(const SafetySettings& settings) {
+    auto no_more_than = [](double device, double wish) { return wish > 0 ? std::min(wish, device) : device; };
+    settings_ = settings;
+    peak_ = no_more_than(device_peak_, settings.peak_force);
+    lasting_ = std::min(peak_, no_more_than(device_lasting_, settings.lasting_force));
 }
 
 dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surface, double now) {
     const double seconds = time_ ? now - *time_ : 0;
     time_ = now;
+    warm(now);
     if (!calm_since_) calm_since_ = now;
     if (!(seconds >= 0 && seconds <= settings_.lost)) {
         let_go(Held::stalled);
@@ -59,16 +111,25 @@ dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surfac
     }
     gain_ = fresh > 0 ? grown(glm::length(wanted), now) : 0;
     dvec3 force = passive(gain_ * fresh * wanted, velocity - surface, seconds);
-    force = no_longer_than(budget(), force);
-    force = force_ + no_longer_than(peak_ / settings_.fall * seconds, force - force_);
-    force_ = no_longer_than(peak_, force);
+    // The limits are the device's, so they are in newtons there.
+    const double there = is_factor(hand.forces) ? double(hand.forces) : 1;
+    force = no_longer_than(budget() / there, force);
+    force = force_ + no_longer_than(peak_ / there / settings_.fall * seconds, force - force_);
+    force_ = no_longer_than(peak_ / there, force);
     if (!is_finite(force_)) {  // numbers so large that they are none together
         let_go(Held::not_finite);
         return none();
     }
-    const double weight = settings_.warm_up > 0 ? 1 - std::exp(-seconds / settings_.warm_up) : 1;
-    heat_ += (glm::dot(force_, force_) - heat_) * weight;
+    pushes_ = glm::length(force_) * there;
     return force_;
+}
+
+// By what was pushed with until now, also if that was for longer than it should have been.
+void Safety::warm(double now) {
+    if (!std::isfinite(now)) return;
+    const double seconds = std::max(now - warmth_.time, 0.0);
+    const double weight = settings_.warm_up > 0 ? 1 - std::exp(-seconds / settings_.warm_up) : 1;
+    warmth_ = {warmth_.square + (pushes_ * pushes_ - warmth_.square) * weight, now};
 }
 
 void Safety::let_go(Held why) {
@@ -77,7 +138,7 @@ void Safety::let_go(Held why) {
     calm_since_ = time_;
     gain_ = 0;
     absorbed_ = 0;
-    if (why == Held::placed) force_ = dvec3(0);  // it belongs to another place
+    if (why == Held::placed) none();  // it belongs to another place
 }
 
 Held Safety::held() const {
@@ -92,7 +153,7 @@ void Safety::watch(const Hand& hand, dvec3 surface) {
         const dvec3 went = dvec3(hand.position) - dvec3(before_.position);
         const double way = glm::length(went);
         absorbed_ = std::min(absorbed_ - glm::dot(force_, went - seconds * surface), settings_.store);
-        if (hand.placed != before_.placed)
+        if (hand.placed != before_.placed || hand.forces != before_.forces || hand.motion != before_.motion)
             let_go(Held::placed);
         else if (way > settings_.jump && way > settings_.fastest_hand * seconds)
             let_go(Held::jumped);
@@ -132,7 +193,7 @@ dvec3 Safety::passive(dvec3 force, dvec3 velocity, double seconds) {
 // A motor's heat goes with the square of its force: the mean of that is held to what it can stand. From four
 // fifths of it on the peak comes down, so that force does not break off.
 double Safety::budget() const {
-    const double over = std::clamp((heat_ / (lasting_ * lasting_) - 0.8) / 0.2, 0.0, 1.0);
+    const double over = std::clamp((warmth_.square / (lasting_ * lasting_) - 0.8) / 0.2, 0.0, 1.0);
     return peak_ + over * (lasting_ - peak_);
 }
 

@@ -7,22 +7,34 @@
 
 namespace palpate {
 
-/// Limits on what a hand may be pushed with.
+/// Limits on what a hand may be pushed with. All are finite and not below zero; in brackets what else.
 struct SafetySettings {
-    double peak_force = 0;     // N; 0: the device's
-    double lasting_force = 0;  // N, for longer than about `warm_up`; 0: the device's
+    double peak_force = 0;     // N, at the device; 0: what that can do
+    double lasting_force = 0;  // N, for longer than about `warm_up`; 0: what the device can
     double warm_up = 10;       // s
-    double fall = 0.008;       // s, in which the peak force may come or go: the fastest change
+    double fall = 0.008;  // s, in which the peak force may come or go: the fastest change [above 0, to 1]
     double small_force = 0.1;  // N: only when no more is wanted for
     double calm = 0.02;        // s without a break does force begin, and
     double ramp = 1;           // s, grows to what it shall be
-    double fresh = 0.003;      // s: a sample of the hand that is older lets go,
-    double fade = 0.020;       // s, in so long
-    double fastest_hand = 3;   // m/s, and
-    double jump = 0.01;        // m: a hand that is farther on than both allow was not moved by a person
-    double lost = 0.008;       // s without a tick, after which all that is known is too old
-    double store = 0.02;       // J, that the passivity observer takes a surface to hold at most
-    double most_damping = 5;   // N·s/m, that the passivity observer may add
+    double fresh = 0.003;      // s: a sample of the hand that is older lets go, [to 1]
+    double fade = 0.020;       // s, in so long [above 0, to 1]
+    double fastest_hand = 3;   // m/s, and [above 0]
+    double jump = 0.01;       // m: a hand that is farther on than both allow was not moved by a person [to 1]
+    double lost = 0.008;      // s without a tick, after which all that is known is too old [above 0, to 1]
+    double store = 0.02;      // J, that the passivity observer takes a surface to hold at most
+    double most_damping = 5;  // N·s/m, that the passivity observer may add
+};
+
+/// Throws Error that names the setting which is out of bounds; `device` is for the message.
+void check(const SafetySettings& settings, const std::string& device);
+
+/// Throws Error if a device says of itself what no limit could be made of.
+void check(const DeviceSpec& device);
+
+/// How warm a device's motors are.
+struct Warmth {
+    double square = 0;  // N², at the device: the mean square of the force, over about `warm_up`
+    double time = 0;    // s, when that was
 };
 
 /// Why there is no force, or not all of it.
@@ -57,15 +69,21 @@ inline std::span<const Named<Held>> names(Held) {
 /// Starts with no force. Works on the time that it is given, so it behaves the same on any clock.
 class Safety {
  public:
-    /// Throws Error if the device or the settings have limits that are none.
-    Safety(const DeviceSpec& device, const SafetySettings& settings);
+    /// Throws Error as check() does. `warmth`: of the motors, if they were used before.
+    Safety(const DeviceSpec& device, const SafetySettings& settings, const Warmth& warmth = {});
+
+    /// Other settings, that were checked; the motors stay as warm.
+    void set(const SafetySettings& settings);
 
     /// What may be written now of a wanted force, N. `hand`: the newest sample; `velocity`: of the hand, m/s;
     /// `surface`: of what it touches.
     dvec3 allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surface, double now);
 
     /// No force at once, as after the device was stopped.
-    dvec3 none() { return force_ = dvec3(0); }
+    dvec3 none() {
+        pushes_ = 0;
+        return force_ = dvec3(0);
+    }
 
     /// No force until a small one is wanted, and then a new ramp.
     void let_go(Held why);
@@ -74,22 +92,26 @@ class Safety {
     Held held() const;
     Held last_reason() const { return reason_; }
 
-    double peak_force() const { return peak_; }
+    double peak_force() const { return peak_; }  // N, at the device
+    const Warmth& warmth() const { return warmth_; }
 
  private:
     void watch(const Hand& hand, dvec3 surface);
     double grown(double wanted, double now);
     dvec3 passive(dvec3 force, dvec3 velocity, double seconds);
+    void warm(double now);
     double budget() const;
 
-    const SafetySettings settings_;
-    const double peak_, lasting_;
+    SafetySettings settings_;
+    double device_peak_, device_lasting_;  // N, that the device can
+    double peak_ = 0, lasting_ = 0;        // N, at the device, that are allowed
     Held reason_ = Held::waiting;
     bool waits_ = true;
     std::optional<double> calm_since_;  // s, when little began to be wanted
     double begun_ = 0;                  // s, when the ramp began
     double gain_ = 0;
-    double heat_ = 0;             // N², the mean square of the force
+    Warmth warmth_;
+    double pushes_ = 0;           // N, at the device, since the last call
     double absorbed_ = 0;         // J, from the hand since the touch began; below 0 it was given out
     std::optional<double> time_;  // of the last call
     Hand before_ = {};

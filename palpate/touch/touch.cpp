@@ -2,25 +2,87 @@
 
 #include "palpate/base/error.h"
 #include "palpate/base/realtime.h"
+#include "palpate/touch/emergency.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t most_marks = most_dents - 3;  // the others are for what is under the tip
+constexpr int no_stroke = std::numeric_limits<int>::max();
+constexpr double usual_rate = 1000;  // Hz, for which a device's stiffest wall is given
 
-bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_sound(const Hand& hand) {
+    const float numbers[] = {hand.position.x, hand.position.y, hand.position.z, hand.forces, hand.motion};
+    for (float number : numbers)
+        if (!std::isfinite(number)) return false;
+    return std::isfinite(hand.time) && hand.forces > 0 && hand.motion > 0;
+}
 
-bool is_sound(const Feel& feel) {
-    const double numbers[] = {feel.stiffness, feel.damping, feel.friction.still, feel.friction.sliding,
-                              feel.dent_width};
-    for (double number : numbers)
-        if (!(number >= 0) || !std::isfinite(number)) return false;
-    return feel.stiffness > 0 && feel.dent_width > 0 && feel.yield >= 0;
+void check(const Feel& feel, const std::string& device) {
+    struct Field {
+        const char* name;
+        double value;
+        bool may_be_zero = true, may_be_infinite = false;
+    };
+    const Field all[] = {
+        {"stiffness", feel.stiffness, false},          {"damping", feel.damping},
+        {"friction.still", feel.friction.still},       {"friction.sliding", feel.friction.sliding},
+        {"dent_width", feel.dent_width, false, false}, {"yield", feel.yield, true, true}};
+    for (const Field& one : all)
+        if (!(one.may_be_zero ? one.value >= 0 : one.value > 0) ||
+            !(one.may_be_infinite || std::isfinite(one.value)))
+            throw Error(fmt::format("Feel::{} is {}", one.name, one.value), device,
+                        fmt::format("give it {} zero{}", one.may_be_zero ? "at least" : "above",
+                                    one.may_be_infinite ? "" : ", and finite"));
+}
+
+void check(const TouchSettings& settings, const std::string& device) {
+    const std::pair<const char*, double> all[] = {{"surprise", settings.surprise},
+                                                  {"velocity_filter", settings.velocity_filter},
+                                                  {"direction_filter", settings.direction_filter}};
+    if (!(settings.radius > 0 && settings.radius < 1))
+        throw Error(fmt::format("a tip with a radius of {} m", settings.radius), device,
+                    "give it one above zero and below 1 m");
+    for (const auto& [name, value] : all)
+        if (!(value >= 0) || !std::isfinite(value))
+            throw Error(fmt::format("TouchSettings::{} is {}", name, value), device,
+                        "give it at least zero, and finite");
+    for (const Feel& feel : settings.feels) check(feel, device);
+    check(settings.safety, device);
+}
+
+Dent dent_under(const Contact& contact, double depth, const Feel& feel) {
+    return {vec3(contact.point), float(contact.behind ? -depth : depth), float(feel.dent_width),
+            vec3(contact.front())};
+}
+
+// How deep a single press makes a surface.
+double deepest_press(const Feel& feel) { return 2.0 / 3 * deepest_dent(feel.dent_width); }
+
+// How much deeper one more dent can make it there. What it adds at the places of others counts the less the
+// farther they are, or the first press would use up all that a stroke may add beside it.
+double room_for_dent(std::span<const Dent> lasting, const Contact& contact, const Feel& feel) {
+    double room = deepest_press(feel) - lasting_depth(lasting, contact);
+    const Dent one[] = {dent_under(contact, 1, feel)};
+    for (const Dent& dent : lasting) {
+        const double side = dent.depth < 0 ? -1 : 1;
+        const double share = side * double(depth_at(one, dent.centre, dent.facing));
+        if (share < 1e-3) continue;
+        const double there = side * double(depth_at(lasting, dent.centre, dent.facing));
+        room = std::min(room, (deepest_dent(feel.dent_width) * (1 - share / 3) - there) / share);
+    }
+    return room;
+}
+
+std::unique_ptr<Device> given(std::unique_ptr<Device> device) {
+    if (!device) throw Error("no device", "a hand", "make one before");
+    return device;
 }
 
 }  // namespace
@@ -32,32 +94,53 @@ std::vector<Dent> Felt::dents_of(int surface) const {
     return list;
 }
 
-Touch::Touch(std::unique_ptr<Device> device, TouchSettings settings)
-    : device_(std::move(device)),
+Touch::Touch(std::unique_ptr<Device> device, TouchSettings settings, const Warmth& warmth)
+    : device_(given(std::move(device))),
       spec_(device_->spec()),
-      settings_(std::move(settings)),
-      proxy_(settings_.radius),
-      safety_(spec_, settings_.safety),
-      marks_(settings_.feels.size()),
-      lasting_(settings_.feels.size()),
-      ticked_(-1) {
-    if (!(settings_.radius > 0 && settings_.radius < 1))
-        throw Error(fmt::format("a tip with a radius of {} m", settings_.radius), spec_.name,
-                    "give it one above zero");
-    for (Feel& feel : settings_.feels) {
-        if (!is_sound(feel))
-            throw Error("a surface that feels like nothing", spec_.name,
-                        "give finite numbers that are not below zero");
-        feel.stiffness = std::min(feel.stiffness, 0.5 * double(spec_.stiffness));
-        friction_.push_back(feel.friction);
-    }
+      settings_(settings),
+      feels_(settings.feels),
+      friction_(settings.feels.size()),
+      proxy_(settings.radius),
+      safety_(spec_, settings.safety, warmth),
+      marks_(settings.feels.size()),
+      lasting_(settings.feels.size()),
+      ticked_(-1),
+      forget_from_(no_stroke) {
+    set(std::move(settings));
+    take_wishes();
     for (auto& list : marks_) list.reserve(most_marks);
     for (auto& list : lasting_) list.reserve(most_marks);
     device_->open();
     device_->stop();
+    add_hand(*this);
 }
 
-Touch::~Touch() { device_->stop(); }
+Touch::~Touch() {
+    device_->stop();
+    remove_hand(*this);
+}
+
+void Touch::set(TouchSettings settings) {
+    check(settings, spec_.name);
+    if (settings.feels.size() != feels_.size())
+        throw Error(fmt::format("feels for {} surfaces instead of {}", settings.feels.size(), feels_.size()),
+                    spec_.name, "begin another touch for other surfaces");
+    settings_ = settings;
+    for (Feel& feel : settings_.feels)
+        feel.stiffness = std::min(feel.stiffness, 0.5 * double(spec_.stiffness));
+    wishes_.draft() = std::move(settings);
+    wishes_.publish();
+}
+
+void Touch::forget(int from_stroke) noexcept {
+    int from = forget_from_.load();
+    while (from_stroke < from && !forget_from_.compare_exchange_weak(from, from_stroke)) {}
+}
+
+void Touch::begin_anew() noexcept {
+    forget(0);
+    begins_anew_ = true;
+}
 
 void Touch::feel(Patch patch) {
     if (patch.surfaces() > settings_.feels.size())
@@ -69,7 +152,9 @@ void Touch::feel(Patch patch) {
 }
 
 bool Touch::tick(double now, double* proxy_seconds) noexcept {
+    ticking_ = true;
     ticked_.store(now, std::memory_order_release);
+    take_wishes();
     Hand read = hand_;
     const bool there = device_->read(now, read);
     if (there)
@@ -77,29 +162,68 @@ bool Touch::tick(double now, double* proxy_seconds) noexcept {
     else
         read = hand_;
     was_gone_ = !there;
+    bound_stiffness();
     if (patches_.fetch() || patches_.shown().fastest() > 0) carry_marks(now);
     const double seconds = std::clamp(now - time_, 0.0, 0.01);
     time_ = now;
     const dvec3 want = turned_slowly(wanted(now, proxy_seconds), seconds);
     const Contact* most = proxy_.deepest();
     dvec3 force = safety_.allow(want, read, velocity_, most ? most->velocity : dvec3(0), now);
-    if (!there) safety_.let_go(Held::gone);
     // The watchdog may have come between: then what was reckoned belongs to a time long ago.
     if (stopped_.exchange(false, std::memory_order_acq_rel)) {
         safety_.let_go(Held::stalled);
         force = safety_.none();
     }
-    if (!device_->write(vec3(force))) safety_.let_go(Held::gone);
+    // A device that does not say where it is, or does not take a force, may hold the one that it had.
+    if (!there || !device_->write(vec3(force))) {
+        device_->stop();
+        safety_.let_go(Held::gone);
+        force = safety_.none();
+    }
     // Or here: then what it stopped was not yet this.
     if (stopped_.load(std::memory_order_acquire)) device_->stop();
     leave_marks();
     tell(now, force);
+    ticking_ = false;
     return there;
+}
+
+// What another thread has asked for since the last tick.
+void Touch::take_wishes() {
+    if (wishes_.fetch()) {
+        const TouchSettings& settings = wishes_.shown();
+        proxy_.set_radius(settings.radius);
+        safety_.set(settings.safety);
+        lost_ = settings.safety.lost;
+        for (std::size_t s = 0; s < feels_.size(); ++s) {
+            feels_[s] = settings.feels[s];
+            friction_[s] = settings.feels[s].friction;
+        }
+    }
+    if (const int from = forget_from_.exchange(no_stroke); from != no_stroke)
+        for (std::size_t s = 0; s < marks_.size(); ++s) {
+            std::erase_if(marks_[s], [&](const Mark& mark) { return mark.stroke >= from; });
+            lasting_[s].clear();
+            for (const Mark& mark : marks_[s]) lasting_[s].push_back(mark.dent);
+        }
+    if (begins_anew_.exchange(false)) {
+        proxy_.put(dvec3(hand_.position));
+        safety_.let_go(Held::placed);
+    }
+}
+
+// Walls that the device holds still at the loop's rate and in the scale that it has now. Half of what it says
+// is on the safe side.
+void Touch::bound_stiffness() {
+    const double scale = double(hand_.forces) * double(hand_.motion);
+    const double most = 0.5 * double(spec_.stiffness) * std::min(rate_ / usual_rate, 1.0) / scale;
+    for (std::size_t s = 0; s < feels_.size(); ++s)
+        feels_[s].stiffness = std::min(wishes_.shown().feels[s].stiffness, most);
 }
 
 bool Touch::watch(double now) noexcept {
     const double last = ticked_.load(std::memory_order_acquire);
-    if (last < 0 || now - last <= settings_.safety.lost) return false;
+    if (last < 0 || now - last <= lost_) return false;
     const bool again = stopped_.load(std::memory_order_acquire);
     let_go();
     return !again;
@@ -114,15 +238,16 @@ void Touch::let_go() noexcept {
 // A sample that is none leaves the hand where it was; Safety sees it too and lets go. After the device was
 // gone the hand may be anywhere, as if it had been placed.
 void Touch::take_in(const Hand& read) {
-    if (!is_finite(read.position) || !std::isfinite(read.time)) return;
+    if (!is_sound(read)) return;
     if (!knows_hand_ || was_gone_ || read.placed != hand_.placed) {
         proxy_.put(dvec3(read.position));
         velocity_ = dvec3(0);
     } else if (const double seconds = read.time - hand_.time; seconds > 0) {
+        const TouchSettings& settings = wishes_.shown();
         dvec3 speed = dvec3(read.position - hand_.position) / seconds;
-        if (!(glm::length(speed) <= settings_.safety.fastest_hand))
+        if (!(glm::length(speed) <= settings.safety.fastest_hand))
             speed = velocity_ = dvec3(0);  // no motion of a hand
-        velocity_ += (1 - std::exp(-seconds / settings_.velocity_filter)) * (speed - velocity_);
+        velocity_ += (1 - std::exp(-seconds / settings.velocity_filter)) * (speed - velocity_);
     }
     hand_ = read;
     knows_hand_ = true;
@@ -134,10 +259,9 @@ dvec3 Touch::wanted(double now, double* proxy_seconds) {
     const dvec3 hand(hand_.position);
     const double pushed = proxy_.follow(patches_.shown(), now, hand, friction_);
     if (proxy_seconds) *proxy_seconds = thread_seconds() - start;
-    if (pushed > settings_.surprise) safety_.let_go(Held::pushed);
+    if (pushed > wishes_.shown().surprise) safety_.let_go(Held::pushed);
     const Contact* most = proxy_.deepest();
-    return most ? force(proxy_, hand, velocity_, settings_.feels, lasting_[std::size_t(most->surface)])
-                : dvec3(0);
+    return most ? force(proxy_, hand, velocity_, feels_, lasting_[std::size_t(most->surface)]) : dvec3(0);
 }
 
 // A force that turns at once, as over an edge of a coarse mesh, feels like the edge and not like the surface.
@@ -149,8 +273,8 @@ dvec3 Touch::turned_slowly(dvec3 wanted, double seconds) {
     }
     const dvec3 now = wanted / strength;
     if (direction_ == dvec3(0)) direction_ = now;
-    const double weight =
-        settings_.direction_filter > 0 ? 1 - std::exp(-seconds / settings_.direction_filter) : 1;
+    const double slowness = wishes_.shown().direction_filter;
+    const double weight = slowness > 0 ? 1 - std::exp(-seconds / slowness) : 1;
     direction_ += weight * (now - direction_);
     const double length = glm::length(direction_);
     direction_ = length > 1e-6 ? direction_ / length : now;
@@ -178,33 +302,36 @@ void Touch::leave_marks() {
     if (safety_.held() != Held::no && safety_.held() != Held::ramping) return;
     for (const Contact& contact : proxy_.contacts()) {
         const auto s = std::size_t(contact.surface);
-        const Feel& feel = settings_.feels[s];
-        const vec3 place(contact.point);
-        const double more =
-            contact.depth - feel.yield - double(depth_at(lasting_[s], place, vec3(contact.normal)));
-        if (!(more > 0)) continue;
-        // Near enough to one that is there already and counts here in full, that one grows; else there is a
+        const Feel& feel = feels_[s];
+        const double wanted = contact.depth - feel.yield - lasting_depth(lasting_[s], contact);
+        const double least = 1e-4 * feel.dent_width;  // less waits until it is more
+        if (!(wanted > least)) continue;
+        const double more = std::min(wanted, room_for_dent(lasting_[s], contact, feel));
+        if (!(more > least)) continue;
+        const Dent dent = dent_under(contact, more, feel);
+        // Near enough to one of the same stroke that counts here in full, that one grows; else there is a
         // new one, as long as there is room.
         std::size_t nearest = marks_[s].size();
-        float closest = 0.25f * float(feel.dent_width);
-        for (std::size_t m = 0; m < marks_[s].size(); ++m)
-            if (const float off = glm::distance(marks_[s][m].dent.centre, place);
-                off < closest && glm::dot(marks_[s][m].dent.facing, vec3(contact.normal)) >= 0.5f) {
-                closest = off;
-                nearest = m;
-            }
+        float closest = 0.25f * dent.width;
+        for (std::size_t m = 0; m < marks_[s].size(); ++m) {
+            const Mark& mark = marks_[s][m];
+            const bool alike = mark.stroke == stroke_ && glm::dot(mark.dent.facing, dent.facing) >= 0.5f &&
+                               (mark.dent.depth > 0) == (dent.depth > 0);
+            const float off = glm::distance(mark.dent.centre, dent.centre);
+            if (!alike || off >= closest) continue;
+            closest = off;
+            nearest = m;
+        }
         if (nearest < marks_[s].size()) {
-            marks_[s][nearest].dent.depth += float(more);
+            marks_[s][nearest].dent.depth += dent.depth;
             lasting_[s][nearest] = marks_[s][nearest].dent;
             continue;
         }
         std::size_t all = 0;
         for (const auto& list : marks_) all += list.size();
         if (all == most_marks) continue;
-        marks_[s].push_back({{place, float(more), float(feel.dent_width), vec3(contact.normal)},
-                             contact.triangle,
-                             contact.weights});
-        lasting_[s].push_back(marks_[s].back().dent);
+        marks_[s].push_back({dent, contact.triangle, contact.weights, stroke_});
+        lasting_[s].push_back(dent);
     }
 }
 
@@ -218,6 +345,8 @@ void Touch::tell(double now, dvec3 force) {
     told_.last_reason = safety_.last_reason();
     told_.buttons = hand_.buttons;
     told_.placed = hand_.placed;
+    told_.warmth = safety_.warmth();
+    told_.depth = 0;
     told_.count = 0;
     auto add = [&](const Dent& dent, std::size_t surface) {
         if (told_.count == most_dents) return;
@@ -227,11 +356,15 @@ void Touch::tell(double now, dvec3 force) {
     for (std::size_t s = 0; s < lasting_.size(); ++s)
         for (const Dent& dent : lasting_[s]) add(dent, s);
     told_.lasting = told_.count;
+    told_.last_stroke = 0;
+    for (const auto& list : marks_)
+        for (const Mark& mark : list) told_.last_stroke = std::max(told_.last_stroke, mark.stroke);
     for (const Contact& contact : proxy_.contacts()) {
         const auto s = std::size_t(contact.surface);
-        const vec3 place(contact.point);
-        const float depth = float(contact.depth) - depth_at(lasting_[s], place, vec3(contact.normal));
-        if (depth > 0) add({place, depth, float(settings_.feels[s].dent_width), vec3(contact.normal)}, s);
+        const double has = lasting_depth(lasting_[s], contact);
+        const double drawn = std::min(contact.depth, deepest_press(feels_[s])) - has;
+        if (drawn > 0) add(dent_under(contact, drawn, feels_[s]), s);
+        told_.depth = std::max(told_.depth, float(contact.depth - has));
     }
     felt_.store(told_);
 }

@@ -16,7 +16,7 @@
 namespace palpate {
 
 struct TouchSettings {
-    double radius = 0.003;  // m, of the tip
+    double radius = 0.003;  // m, of the tip; above 0, below 1
     std::vector<Feel> feels = {
         {}};  // one for each surface that it meets, in the order of the patches' Touchables
     SafetySettings safety = {};
@@ -33,16 +33,19 @@ struct Felt {
     vec3 velocity = vec3(0);           // m/s, of the hand
     vec3 proxy = vec3(0);              // m
     vec3 force = vec3(0);              // N, on the hand
+    float depth = 0;                   // m, how deep it presses, below what stays of dents
     Held held = Held::waiting;         // whether that is all,
     Held last_reason = Held::waiting;  // and why it was let go of the last time
     unsigned buttons = 0;
     unsigned placed = 0;
+    Warmth warmth = {};  // of the device's motors
 
     // The dents that surfaces shall be drawn with: those that stay and those under the tip.
     std::array<Dent, most_dents> dents = {};
     std::array<int, most_dents> surfaces = {};  // whose they are
     int count = 0;
-    int lasting = 0;  // the first so many of them stay
+    int lasting = 0;      // the first so many of them stay,
+    int last_stroke = 0;  // and the latest of the strokes that made those; 0 if there are none
 
     std::vector<Dent> dents_of(int surface) const;
 };
@@ -53,9 +56,16 @@ struct Felt {
 /// meanwhile.
 class Touch {
  public:
-    /// Opens the device. Throws Error if it cannot be, or if settings or feels are out of all bounds.
-    Touch(std::unique_ptr<Device> device, TouchSettings settings);
+    /// Opens the device. Throws Error if it cannot be opened, or if it or the settings are out of bounds.
+    /// `warmth`: of its motors, where they were used before (Felt::warmth).
+    Touch(std::unique_ptr<Device> device, TouchSettings settings, const Warmth& warmth = {});
     ~Touch();  // no force is left
+    Touch(const Touch&) = delete;
+    Touch& operator=(const Touch&) = delete;
+
+    /// Other settings from the next tick on, for as many surfaces: the device stays open and its motors as
+    /// warm as they are, and dents stay. Throws Error like the constructor, and then all is as it was.
+    void set(TouchSettings settings);
 
     /// What the hand can meet from now on, of no more surfaces than there are feels; else throws Error. Call
     /// it as often as surfaces move, or once if they do not.
@@ -63,6 +73,19 @@ class Touch {
 
     /// The newest.
     Felt felt() const { return felt_.load(); }
+
+    /// Begins a stroke and returns its number, from 1 on: dents that will stay belong to it.
+    int begin_stroke() noexcept { return ++stroke_; }
+
+    /// From the next tick on the dents of this stroke and of all later ones are gone.
+    void forget(int from_stroke) noexcept;
+
+    /// All dents are gone, and the hand begins without force, as where it is placed: for surfaces that are
+    /// others now, or as they were at the start.
+    void begin_anew() noexcept;
+
+    /// Of the loop that ticks it, Hz: below 1000, walls are as much less stiff, or they would not be still.
+    void expect_rate(double rate) noexcept { rate_ = rate; }
 
     /// False if the device did not answer. `proxy_seconds`, if given, is what the proxy took of the
     /// processor's time.
@@ -73,13 +96,21 @@ class Touch {
     bool watch(double now) noexcept;
 
     /// No more force, when nobody ticks any more; the next tick, if there is one, begins anew.
+    /// Async-signal-safe.
     void let_go() noexcept;
 
+    /// Whether a tick is under way.
+    bool is_ticking() const noexcept { return ticking_; }
+
+    /// Stiffnesses as far as the device bears them.
     const TouchSettings& settings() const { return settings_; }
     const DeviceSpec& device() const { return spec_; }
 
  private:
+    void take_wishes();
     void take_in(const Hand& hand);
+    void bound_stiffness();
+    bool write(dvec3 force);
     dvec3 wanted(double now, double* proxy_seconds);
     void carry_marks(double now);
     dvec3 turned_slowly(dvec3 wanted, double seconds);
@@ -91,15 +122,19 @@ class Touch {
         Dent dent;
         int triangle;
         dvec3 weights;
+        int stroke;
     };
 
     std::unique_ptr<Device> device_;
     const DeviceSpec spec_;
-    TouchSettings settings_;
+    TouchSettings settings_;        // of whoever sets them
+    Latest<TouchSettings> wishes_;  // as they were set
+    std::vector<Feel> feels_;       // those, as far as the device bears them now
     std::vector<Friction> friction_;
     Proxy proxy_;
     Safety safety_;
     Latest<Patch> patches_;
+    std::atomic<double> lost_ = 0;  // s, of the settings, for the watchdog
     Hand hand_ = {};
     bool knows_hand_ = false;
     bool was_gone_ = false;
@@ -111,7 +146,9 @@ class Touch {
     Felt told_ = {};
     Shared<Felt> felt_;
     std::atomic<double> ticked_;  // s; below 0 before the first
-    std::atomic<bool> stopped_ = false;
+    std::atomic<bool> stopped_ = false, ticking_ = false, begins_anew_ = false;
+    std::atomic<int> stroke_ = 0, forget_from_;
+    std::atomic<double> rate_ = 1000;  // Hz
 };
 
 }  // namespace palpate

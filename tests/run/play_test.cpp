@@ -371,6 +371,30 @@ TEST(Play, WhatIsDeeperThanItYieldsStaysInThePicture) {
     EXPECT_LE(std::abs(left[0].depth - 0.003f), 1e-5f);
 }
 
+// A cloth that is pinned all around, and a tip that comes from either side.
+TEST(Play, AClothIsFeltFromBothSides) {
+    for (const char* path : {"[[0, 0.02, 0.02, 0.02], [1.2, 0.02, 0.02, 0.02], [2, 0.02, 0.02, -0.002], [3, "
+                             "0.02, 0.02, -0.002]]",
+                             "[[0, 0.02, 0.02, -0.02], [1.2, 0.02, 0.02, -0.02], [2, 0.02, 0.02, 0.002], [3, "
+                             "0.02, 0.02, 0.002]]"}) {
+        const Scene felt =
+            scene(std::string("[simulation]\nduration = 3\ngravity = [0, 0, 0]\n"
+                              "[[body]]\nname = \"cloth\"\ncloth = [5, 5]\nspacing = 0.01\nmass = 0.01\n"
+                              "touch = { stiffness = 200 }\n"
+                              "[[tool]]\nkind = \"dent\"\nradius = 0.003\npath = ") +
+                  path + "\n");
+        const Models made = build(felt);
+        Report report;
+        Play play(felt, made, report);
+        EXPECT_TRUE(play.skins()[0].is_sheet);
+        Bounds box;
+        for (vec3 p : play.skins()[0].positions) box.include(p);
+        const Report done = run(felt, {});
+        EXPECT_GT(done.tools[0].largest_force, 0.5)
+            << path << box.low.x << box.low.y << box.low.z << " " << box.high.x << box.high.y << box.high.z;
+    }
+}
+
 // A body that falls past: the tip feels it come, and its patch moves on between frames.
 TEST(Play, AMovingBodyIsFeltToo) {
     const Scene falling = scene("[simulation]\nduration = 0.5\ngravity = [0, -0.5, 0]\n" +

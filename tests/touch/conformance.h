@@ -53,6 +53,11 @@ inline bool same(const Hand& a, const Hand& b) {
            a.buttons == b.buttons && a.placed == b.placed;
 }
 
+inline void expect_scale(const Hand& hand) {
+    EXPECT_TRUE(std::isfinite(hand.forces) && hand.forces > 0);
+    EXPECT_TRUE(std::isfinite(hand.motion) && hand.motion > 0);
+}
+
 inline void expect_finite(vec3 v) {
     EXPECT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
 }
@@ -62,7 +67,7 @@ TEST_P(Conformance, ItsSpecIsSaneBeforeItIsOpenAndAfter) {
         const DeviceSpec spec = device_.spec();
         EXPECT_FALSE(spec.name.empty());
         EXPECT_EQ(spec.name.find_first_of("\r\n"), spec.name.npos);
-        EXPECT_GE(spec.lasting_force, 0);
+        EXPECT_GT(spec.lasting_force, 0);
         EXPECT_GE(spec.peak_force, spec.lasting_force);
         EXPECT_TRUE(std::isfinite(spec.peak_force));
         EXPECT_GT(spec.stiffness, 0);
@@ -88,6 +93,7 @@ TEST_P(Conformance, AHandIsFiniteAndOfItsTime) {
         EXPECT_LE(hand.time, now);
         EXPECT_GE(hand.time, last.time);
         EXPECT_GE(hand.placed, last.placed);
+        expect_scale(hand);
         last = hand;
         device_.write(push * float(i % 7));
     }

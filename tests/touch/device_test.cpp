@@ -275,7 +275,9 @@ TEST(VirtualHand, WhatCannotBeIsSaid) {
     };
     const Path plan = {{0, vec3(0)}};
     EXPECT_EQ(complaint(plan, {}), "");
-    EXPECT_NE(complaint({}, {}).find("no plan of motion in virtual hand; "), std::string::npos);
+    EXPECT_NE(complaint({}, {}).find("no waypoint in virtual hand; "), std::string::npos);
+    EXPECT_NE(complaint({{0, vec3(NAN)}}, {}).find("waypoint 1 is not a number"), std::string::npos);
+    EXPECT_NE(complaint({{1, vec3(0)}, {1, vec3(1)}}, {}).find("waypoint 2 is not later"), std::string::npos);
     for (const VirtualHandSettings& wrong :
          {VirtualHandSettings{.mass = 0}, VirtualHandSettings{.damping = -1},
           VirtualHandSettings{.stiffness = NAN}, VirtualHandSettings{.resolution = -1},
@@ -476,6 +478,44 @@ TEST(Scaled, KeepsAWallsStiffnessUnlessToldOtherwise) {
     EXPECT_EQ(hand.placed, 1u);
     EXPECT_THROW(Scaled(straight(), {.motion = 0}).open(), Error);
     EXPECT_THROW(Scaled(straight(), {.motion = 1, .forces = -1}).open(), Error);
+    for (const Scale& none : {Scale{.motion = 0}, Scale{.motion = 1e-30f}, Scale{.motion = NAN},
+                              Scale{.motion = 1, .forces = NAN}, Scale{.about = vec3(NAN)}})
+        EXPECT_THROW(scaled.set(none), Error);
+    scaled.read(3, hand);
+    EXPECT_EQ(hand.placed, 1u);
+    EXPECT_FLOAT_EQ(hand.forces, 3 / 10.0f);  // against what spec() said
+    EXPECT_FLOAT_EQ(hand.motion, 2 / 0.1f);
+}
+
+TEST(Decorators, WantADeviceAndSettingsThatAreSome) {
+    EXPECT_THROW(Clutch(nullptr), Error);
+    EXPECT_THROW(Recorder(straight(), NAN), Error);
+    EXPECT_THROW(Recorder(straight(), 1, -1), Error);
+    EXPECT_THROW(Recorder(straight(), 1e30, 1000), Error);
+    EXPECT_THROW(Faulty(straight(), {}, {}), Error);
+    EXPECT_THROW(Faulty(straight(), {{.from = 0, .to = NAN}}, [](double) {}), Error);
+}
+
+TEST(Mouse, WhereItIsPlacedItIsAtOnceAndGoesOnFromThere) {
+    Mouse mouse({.camera = {.eye = vec3(0, 0, 1), .look_at = vec3(0)}, .size = ivec2(100)});
+    mouse.open();
+    Hand hand;
+    mouse.point({.time = 0, .position = vec2(50)});
+    mouse.read(0, hand);
+    const unsigned before = hand.placed;
+    // Both before the loop comes round: it is placed to the left, and goes to the right from there.
+    mouse.place({.time = 0.001, .position = vec2(10, 50)});
+    mouse.point({.time = 0.001, .position = vec2(90, 50)});
+    mouse.read(0.001, hand);
+    EXPECT_EQ(hand.placed, before + 1);
+    const float left = hand.position.x;
+    EXPECT_LT(left, -0.1f);
+    mouse.read(0.002, hand);
+    EXPECT_GT(hand.position.x, left);
+    EXPECT_LT(hand.position.x, 0);
+    mouse.read(1, hand);
+    EXPECT_NEAR(hand.position.x, -left, 1e-4);
+    EXPECT_EQ(hand.placed, before + 1);
 }
 
 TEST(Clutch, HoldsThePositionAndGoesOnFromThere) {

@@ -100,6 +100,9 @@ TEST(TouchLoop, RefusesARateThatIsNone) {
     Hand2 hand;
     for (double rate : {0.0, 100.0, 5000.0, -1.0, double(NAN)})
         EXPECT_THROW(TouchLoop({hand.touch.get()}, {.rate = rate}), Error) << rate;
+    for (double spin : {double(INFINITY), double(NAN), -1.0, 1.0})
+        EXPECT_THROW(TouchLoop({hand.touch.get()}, {.spin = spin}), Error) << spin;
+    EXPECT_THROW(TouchLoop({nullptr}), Error);
 }
 
 // Surfaces come from one thread while another feels them and a third looks on; for the thread sanitizer too.

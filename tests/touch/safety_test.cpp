@@ -1,6 +1,8 @@
 // What stands between a wish and a hand: on a clock that goes where the test says.
 #include "palpate/touch/safety.h"
 
+#include "palpate/base/error.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -224,6 +226,69 @@ TEST(Safety, ASampleFromTheFutureIsNoBetterThanAnOldOne) {
     c.hand.time = 1e6;
     EXPECT_LE(c.until_nothing([&] { c.tick(dvec3(0, 1, 0), false); }), 0.025);
     EXPECT_EQ(c.safety.last_reason(), Held::stale);
+}
+
+// None of them may switch a limit off.
+TEST(Safety, EachSettingIsChecked) {
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    double SafetySettings::*const all[] = {
+        &SafetySettings::peak_force,   &SafetySettings::lasting_force, &SafetySettings::warm_up,
+        &SafetySettings::fall,         &SafetySettings::small_force,   &SafetySettings::calm,
+        &SafetySettings::ramp,         &SafetySettings::fresh,         &SafetySettings::fade,
+        &SafetySettings::fastest_hand, &SafetySettings::jump,          &SafetySettings::lost,
+        &SafetySettings::store,        &SafetySettings::most_damping};
+    static_assert(sizeof all / sizeof all[0] * sizeof(double) == sizeof(SafetySettings));
+    for (auto one : all)
+        for (double value : {nan, inf, -inf, -1.0}) {
+            SafetySettings settings;
+            settings.*one = value;
+            EXPECT_THROW(Safety({}, settings), Error) << (one == all[8]) << value;
+        }
+    // A force would go on for longer than anybody holds on to a device.
+    for (auto one : {&SafetySettings::fall, &SafetySettings::fresh, &SafetySettings::fade,
+                     &SafetySettings::lost, &SafetySettings::jump})
+        for (double value : {1e300, 1.01}) {
+            SafetySettings settings;
+            settings.*one = value;
+            EXPECT_THROW(Safety({}, settings), Error) << value;
+        }
+    try {
+        Safety({.name = "an arm"}, {.fade = inf});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(),
+                     "SafetySettings::fade is inf in an arm; give it above zero, and 1 at most");
+    }
+    for (float value : {float(nan), float(inf), 0.0f, -1.0f}) {
+        EXPECT_THROW(Safety({.peak_force = value}, {}), Error);
+        EXPECT_THROW(Safety({.lasting_force = value}, {}), Error);
+        EXPECT_THROW(Safety({.stiffness = value}, {}), Error);
+    }
+    EXPECT_THROW(Safety({}, {}, {.square = nan}), Error);
+}
+
+// A motor that pushed until a moment ago is as warm for whoever takes it over, and has cooled down later.
+TEST(Safety, WarmMotorsStayWarm) {
+    Clocked first;
+    first.arm();
+    for (int i = 0; i < 30'000; ++i) first.tick(dvec3(0, 0, 3.3));
+    const Warmth warmth = first.safety.warmth();
+    EXPECT_NEAR(warmth.square, 0.9 * 0.9, 0.05);
+    for (double later : {0.001, 60.0}) {
+        SafetySettings settings;
+        settings.calm = settings.ramp = 0;
+        Safety second({}, settings, warmth);
+        dvec3 force(0);
+        for (int i = 0; i < 50; ++i) {
+            const double now = warmth.time + later + i * 1e-3;
+            const Hand hand{.time = now};
+            force = second.allow(dvec3(0, 0, i < 3 ? 0 : 3.3), hand, dvec3(0), dvec3(0), now);
+        }
+        if (later < 1)
+            EXPECT_LE(glm::length(force), 1.2);
+        else
+            EXPECT_NEAR(glm::length(force), 3.3, 1e-6);
+    }
 }
 
 TEST(Safety, NoForceBridgesAPlacing) {

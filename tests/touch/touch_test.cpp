@@ -4,6 +4,7 @@
 
 #include "palpate/base/error.h"
 #include "palpate/touch/devices/faulty.h"
+#include "palpate/touch/devices/scaled.h"
 #include "palpate/touch/devices/script.h"
 #include "palpate/touch/devices/virtual_hand.h"
 #include "tests/shapes.h"
@@ -41,6 +42,24 @@ class Watched final : public Decorator {
     }
     vec3 written = vec3(0);
     int stops = 0;
+};
+
+// A motor that holds what it took last until it is told otherwise, as hardware does; its hand follows a path.
+class Motor final : public Decorator {
+ public:
+    explicit Motor(Path path) : Decorator(std::make_unique<Script>(std::move(path))) {}
+    DeviceSpec spec() const override { return {.name = "motor"}; }
+    void open() override {
+        ++opened;
+        Decorator::open();
+    }
+    bool write(vec3 force) noexcept override {
+        holds = force;
+        return true;
+    }
+    void stop() noexcept override { holds = vec3(0); }
+    vec3 holds = vec3(0);  // N
+    int opened = 0;
 };
 
 struct Scene1 {
@@ -186,6 +205,277 @@ struct Trial {
     bool pushes_after;  // whether it pushes again by itself in the end
 };
 
+// What counts is what the motor holds, and not what it was asked for.
+TEST(Touch, ADeviceThatRefusesForcesHoldsNone) {
+    const Mesh mesh = slab();
+    const vec3 above(0, 0.01f, 0), deep(0, radius - 0.005f, 0);
+    auto inner = std::make_unique<Motor>(
+        path({{0, above}, {1.2, above}, {1.6, deep}, {6, deep}, {6.5, above}, {7, above}, {7.5, deep}}));
+    const Motor& motor = *inner;
+    constexpr double fails = 2, over = 5;
+    Scene1 s(std::make_unique<Faulty>(std::move(inner), std::vector{Fault{FaultKind::refuse, fails, over}},
+                                      [](double) {}),
+             soft());
+    s.touch->feel(all_of(mesh));
+    s.until(fails);
+    EXPECT_GE(motor.holds.y, 1.4f);
+    s.tick();
+    s.tick();
+    while (s.time < 5.5) {  // and while the hand is still in the surface
+        s.tick();
+        ASSERT_EQ(motor.holds, vec3(0)) << s.time;
+    }
+    EXPECT_EQ(s.touch->felt().last_reason, Held::gone);
+    EXPECT_EQ(s.touch->felt().force, vec3(0));
+    s.until(9);
+    EXPECT_GE(motor.holds.y, 1.4f);
+}
+
+// One that does not say any more where the hand is, but would hold on to its force.
+TEST(Touch, ADeviceThatDoesNotAnswerHoldsNoForce) {
+    class Mute final : public Decorator {
+     public:
+        using Decorator::Decorator;
+        bool read(double now, Hand& hand) noexcept override { return !mute && Decorator::read(now, hand); }
+        bool mute = false;
+    };
+    const Mesh mesh = slab();
+    auto inner = std::make_unique<Motor>(
+        path({{0, {0, 0.01f, 0}}, {1.2, {0, 0.01f, 0}}, {1.6, {0, radius - 0.005f, 0}}}));
+    const Motor& motor = *inner;
+    auto outer = std::make_unique<Mute>(std::move(inner));
+    Mute& mute = *outer;
+    Scene1 s(std::move(outer), soft());
+    s.touch->feel(all_of(mesh));
+    s.until(2);
+    EXPECT_GE(motor.holds.y, 1.4f);
+    mute.mute = true;
+    s.tick();
+    EXPECT_EQ(motor.holds, vec3(0));
+}
+
+// The limits are the device's, however its scale is set: half of its stiffest wall, and what its motors
+// stand.
+TEST(Touch, NoScaleTakesADevicePastItsLimits) {
+    const Mesh mesh = slab();
+    const struct {
+        Scale first, then;
+    } trials[] = {
+        {{.motion = 1}, {.motion = 1, .forces = 3}},
+        {{.motion = 1}, {.motion = 3, .forces = 1}},
+        {{.motion = 1}, {.motion = 0.2f}},
+        {{.motion = 2}, {.motion = 4, .forces = 4}},
+        {{.motion = 1, .forces = 1}, {.motion = 1, .forces = 0.1f}},
+    };
+    for (const auto& trial : trials) {
+        const float m = trial.then.motion;  // the hand goes as far in the scene
+        const float out = 0.01f / m, in = (radius - 0.008f) / m, in_more = (radius - 0.0085f) / m;
+        auto inner = std::make_unique<Motor>(path({{0, {0, out, 0}},
+                                                   {2.5, {0, out, 0}},
+                                                   {3, {0, in, 0}},
+                                                   {3.5, {0, in, 0}},
+                                                   {3.6, {0, in_more, 0}},
+                                                   {40, {0, in_more, 0}}}));
+        const Motor& motor = *inner;
+        auto scaled = std::make_unique<Scaled>(std::move(inner), trial.first);
+        Scaled& scale = *scaled;
+        TouchSettings settings = soft();
+        settings.feels[0] = {.stiffness = 1e5, .damping = 0, .dent_width = 0.1};
+        settings.safety.peak_force = 1e9;
+        Touch touch(std::move(scaled), settings);
+        touch.feel(all_of(mesh));
+        double square = 0, first = 0;
+        long count = 0;
+        const DeviceSpec spec = motor.spec();
+        for (int i = 1; i < 40'000; ++i) {
+            if (i == 1000) scale.set(trial.then);
+            touch.tick(i * 1e-3);
+            const double holds = glm::length(motor.holds);
+            ASSERT_LE(holds, spec.peak_force * 1.0001f);
+            if (i == 3499) first = holds;
+            if (i == 3700) {  // N more over m more, at the device
+                const double stiffness = (holds - first) / double(in - in_more);
+                EXPECT_LE(stiffness, 0.5 * double(spec.stiffness) * 1.001);
+            }
+            if (i >= 20'000) square += holds * holds, ++count;
+        }
+        EXPECT_LE(std::sqrt(square / double(count)), 1.01 * double(spec.lasting_force));
+        EXPECT_GT(square, 0);
+    }
+}
+
+TEST(Touch, ASlowLoopFeelsSofterWalls) {
+    const Mesh mesh = slab();
+    double forces[2];
+    for (int slow = 0; slow < 2; ++slow) {
+        TouchSettings settings = soft();
+        settings.feels[0].stiffness = 1e5;
+        Scene1 s(std::make_unique<Script>(
+                     path({{0, {0, 0.01f, 0}}, {1.2, {0, 0.01f, 0}}, {1.6, {0, radius - 0.002f, 0}}})),
+                 settings);
+        if (slow) s.touch->expect_rate(250);
+        s.touch->feel(all_of(mesh));
+        s.until(3);
+        forces[slow] = glm::length(s.device->written);
+    }
+    EXPECT_NEAR(forces[0], 500 * 0.002, 0.01);
+    EXPECT_NEAR(forces[1], 125 * 0.002, 0.01);
+}
+
+// ---- other settings, and beginning anew ----
+
+TEST(Touch, OtherSettingsLeaveTheDeviceOpenAndItsMotorsWarm) {
+    const Mesh mesh = slab();
+    const vec3 above(0, 0.01f, 0);
+    auto inner = std::make_unique<Motor>(path({{0, above}, {1.2, above}, {1.6, {0, radius - 0.02f, 0}}}));
+    const Motor& motor = *inner;
+    Scene1 s(std::move(inner), soft());
+    s.touch->feel(all_of(mesh));
+    s.until(30);
+    const double lasting = s.touch->device().lasting_force;
+    EXPECT_LE(glm::length(motor.holds), 1.05f * float(lasting));
+    const double warm = s.touch->felt().warmth.square;
+    EXPECT_GE(warm, 0.7 * lasting * lasting);
+    TouchSettings other = soft();
+    other.feels[0].stiffness = 200;
+    other.radius = 0.0031;
+    s.touch->set(other);
+    s.tick();
+    EXPECT_NEAR(s.touch->felt().warmth.square, warm, 0.01);
+    const std::size_t before = allocations();
+    s.tick();
+    EXPECT_EQ(allocations(), before);
+    s.until(31);
+    EXPECT_LE(glm::length(motor.holds), 1.05f * float(lasting));
+    EXPECT_EQ(motor.opened, 1);
+    // What cannot be changes nothing.
+    other.radius = NAN;
+    EXPECT_THROW(s.touch->set(other), Error);
+    other = soft();
+    other.feels.push_back({});
+    EXPECT_THROW(s.touch->set(other), Error);
+    EXPECT_EQ(s.touch->settings().feels[0].stiffness, 200);
+}
+
+// Two strokes, each of which leaves a dent.
+struct TwoStrokes {
+    Mesh mesh = slab();
+    std::unique_ptr<Scene1> scene;
+    TwoStrokes() {
+        TouchSettings settings = soft();
+        settings.feels[0].yield = 0.002;
+        const vec3 left(-0.05f, 0.01f, 0), right(0.05f, 0.01f, 0), down(0, -0.01f - 0.005f + radius, 0);
+        scene = std::make_unique<Scene1>(std::make_unique<Script>(path({{0, left},
+                                                                        {1.5, left},
+                                                                        {2, left + down},
+                                                                        {2.5, left},
+                                                                        {3, right},
+                                                                        {3.5, right + down},
+                                                                        {4, right},
+                                                                        {4.5, right + down}})),
+                                         settings);
+        scene->touch->feel(all_of(mesh));
+        EXPECT_EQ(scene->touch->begin_stroke(), 1);
+        scene->until(2.7);
+        EXPECT_EQ(scene->touch->begin_stroke(), 2);
+        scene->until(4);
+    }
+};
+
+TEST(Touch, AStrokeIsTakenBack) {
+    TwoStrokes two;
+    Scene1& s = *two.scene;
+    Felt felt = s.touch->felt();
+    ASSERT_EQ(felt.lasting, 2);
+    EXPECT_EQ(felt.last_stroke, 2);
+    const Dent first = felt.dents[0];
+    s.touch->forget(2);
+    s.tick();
+    felt = s.touch->felt();
+    ASSERT_EQ(felt.lasting, 1);
+    EXPECT_EQ(felt.last_stroke, 1);
+    EXPECT_EQ(felt.dents[0].centre, first.centre);
+    EXPECT_EQ(felt.dents[0].depth, first.depth);
+    s.until(4.5);  // and is not felt any more: the full depth is
+    EXPECT_LE(std::abs(glm::length(s.device->written) - 300 * 0.002f), 0.1f);
+}
+
+TEST(Touch, BeginningAnewLeavesNoDentAndNoForce) {
+    TwoStrokes two;
+    Scene1& s = *two.scene;
+    s.until(4.499);
+    EXPECT_GT(s.device->written.y, 0.4f);
+    s.touch->begin_anew();
+    for (int i = 0; i < 100; ++i) {
+        s.tick();
+        EXPECT_EQ(s.device->written, vec3(0));
+        EXPECT_EQ(s.touch->felt().lasting, 0);
+    }
+    EXPECT_EQ(s.touch->felt().last_reason, Held::placed);
+}
+
+// However deep a hand goes, and however often it comes over the same place.
+TEST(Touch, DentsAreNoDeeperThanASurfaceBears) {
+    const Mesh mesh = slab(20);
+    TouchSettings settings = soft();
+    settings.radius = 0.002;
+    settings.feels[0] = {.stiffness = 20, .friction = {0, 0}, .dent_width = 0.01, .yield = 0.001};
+    std::vector<std::pair<double, vec3>> way{{0, {0, 0.01f, 0}}, {1.2, {0, 0.01f, 0}}};
+    for (int i = 0; i < 30; ++i)
+        way.emplace_back(1.5 + 0.4 * i,
+                         vec3(0.02f * std::sin(float(i) * 1.7f), -0.045f, 0.02f * std::cos(float(i) * 2.9f)));
+    Scene1 s(std::make_unique<Script>(path(way)), settings);
+    s.touch->feel(all_of(mesh));
+    float deepest = 0;
+    while (s.time < 13) {
+        s.until(s.time + 0.1);
+        const Felt felt = s.touch->felt();
+        const std::vector<Dent> dents(felt.dents.begin(), felt.dents.begin() + felt.lasting);
+        for (float x = -0.04f; x < 0.04f; x += 0.004f)
+            for (float z = -0.04f; z < 0.04f; z += 0.004f)
+                deepest = std::max(deepest, depth_at(dents, vec3(x, 0, z), vec3(0, 1, 0)));
+    }
+    EXPECT_GT(s.touch->felt().lasting, 5);
+    EXPECT_GT(deepest, 0.007f);
+    EXPECT_LE(deepest, 0.0125f);  // between their centres a little more than at them
+}
+
+// ---- sheets ----
+
+// A leaf of cloth at y = 0 that looks up.
+TEST(Touch, ASheetIsFeltAndDentedFromBothSides) {
+    const std::vector<vec3> corners = {{-0.1f, 0, 0.1f}, {0.1f, 0, 0.1f}, {0, 0, -0.1f}};
+    const std::vector<uvec3> triangles = {{0, 1, 2}};
+    for (float side : {1.0f, -1.0f})
+        for (bool is_sheet : {true, false}) {
+            const Touchable leaf[] = {{corners, triangles, {}, is_sheet}};
+            TouchSettings settings = soft();
+            settings.feels[0].yield = 0.002;
+            const vec3 off(0, side * 0.01f, 0), in(0, side * (radius - 0.005f), 0);
+            Scene1 s(std::make_unique<Script>(
+                         path({{0, off}, {1.5, off}, {2, in}, {2.5, in}, {3, off}, {3.5, off}, {4, in}})),
+                     settings);
+            s.touch->feel(Patch(leaf));
+            s.until(2.4);
+            if (side < 0 && !is_sheet) {
+                EXPECT_EQ(s.device->written, vec3(0));  // a solid's inside
+                continue;
+            }
+            EXPECT_NEAR(s.device->written.y, side * 300 * 0.002f, 0.01f);
+            s.until(3.4);
+            const Felt felt = s.touch->felt();
+            ASSERT_EQ(felt.lasting, 1);
+            // As the renderer has it: the surface moves away from the hand, against its own normal or along
+            // it.
+            const vec3 there = dented({felt.dents.data(), 1}, vec3(0), vec3(0, 1, 0));
+            EXPECT_NEAR(there.y, -side * 0.003f, 1e-5);
+            s.until(4);
+            EXPECT_NEAR(s.device->written.y, side * 300 * 0.002f, 0.01f);
+        }
+}
+
+// ---- more faults ----
+
 // A hand that is being pushed with about 1.5 N when something fails for 50 ms.
 TEST(Touch, WhateverFailsTheForceIsWithinItsLimitsAndGoneIn25Milliseconds) {
     const Mesh mesh = slab();
@@ -208,7 +498,7 @@ TEST(Touch, WhateverFailsTheForceIsWithinItsLimitsAndGoneIn25Milliseconds) {
         s.until(fails);
         EXPECT_GE(s.device->written.y, 1.4f) << trial.name;
         s.until(fails + 0.025);
-        if (trial.fault.kind != FaultKind::refuse) EXPECT_EQ(s.device->written, vec3(0)) << trial.name;
+        EXPECT_EQ(s.device->written, vec3(0)) << trial.name;
         EXPECT_EQ(s.touch->felt().last_reason, trial.reason)
             << trial.name << ": " << name_of(s.touch->felt().last_reason);
         // It waits until the hand is out, then grows anew.
@@ -321,6 +611,20 @@ TEST(Touch, RefusesSettingsThatAreNone) {
     EXPECT_THROW(made({.safety = {.fall = 0}}), Error);
     EXPECT_THROW(made({}, {.peak_force = NAN}), Error);
     EXPECT_THROW(made({}, {.lasting_force = 0}), Error);
+    EXPECT_THROW(made({}, {.stiffness = NAN}), Error);
+    EXPECT_THROW(made({.feels = {{.yield = NAN}}}), Error);
+    EXPECT_THROW(made({.surprise = INFINITY}), Error);
+    EXPECT_THROW(made({.velocity_filter = NAN}), Error);
+    EXPECT_THROW(made({.direction_filter = -1}), Error);
+    EXPECT_THROW(made({.safety = {.fade = INFINITY}}), Error);
+    EXPECT_THROW(made({.safety = {.peak_force = NAN}}), Error);
+    EXPECT_THROW(Touch(nullptr, {}), Error);
+    const Mesh mesh = slab();
+    const std::vector<vec3> few(3, vec3(0));
+    const Touchable wrong[] = {{few, mesh.triangles}};
+    EXPECT_THROW(Patch{wrong}, Error);
+    const Touchable another[] = {{mesh.positions, mesh.triangles, few}};
+    EXPECT_THROW(Patch{another}, Error);
 }
 
 TEST(Touch, WhatNoHandFeltLeavesNoDent) {

@@ -275,6 +275,98 @@ TEST_F(ViewerTest, TheHandThatDentsFeelsAndIsSeen) {
     EXPECT_TRUE(difference(viewer.image(), before) < 0.02);
 }
 
+// A surface in which dents stay; a hand that only goes by leaves none, and what one leaves can be taken back.
+TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
+    open("box", {"simulation.gravity=[0,0,0]", "body.1.touch.yield=0", "body.1.touch.width=0.004"});
+    viewer.options.paused = true;
+    viewer.options.tip = 0.004f;
+    viewer.options.mode = Mode::dent;
+    const double start = now();
+    auto until = [&](auto holds) {
+        while (!holds() && now() - start < 60) viewer.advance(1);
+        return holds();
+    };
+    auto lasting = [&] { return viewer.feeling()->felt().lasting; };
+    // From below the body to above it and back: through it, if the hand went straight.
+    for (int i = 0; i < 20; ++i) {
+        viewer.move_pointer(middle() + vec2(0, i % 2 ? 90 : -90));
+        viewer.advance(1);
+        const double from = now();
+        while (now() - from < 0.03) viewer.advance(1);
+    }
+    viewer.move_pointer(middle());
+    ASSERT_TRUE(until([&] { return viewer.feeling() && viewer.feeling()->felt().time > 0; }));
+    EXPECT_EQ(lasting(), 0);
+    EXPECT_FALSE(viewer.can_undo());
+    const Image untouched = viewer.image();
+
+    const vec2 places[] = {middle() + vec2(-40, 0), middle() + vec2(40, 0)};
+    for (vec2 place : places) {
+        const int before = lasting();
+        viewer.move_pointer(place);
+        viewer.advance(1);
+        viewer.press(Button::left);
+        EXPECT_TRUE(until([&] { return lasting() > before; }));
+        viewer.release(Button::left);
+        EXPECT_TRUE(until([&] { return viewer.feeling()->felt().count == lasting(); }));
+    }
+    const Image twice = viewer.image();
+    EXPECT_GT(difference(twice, untouched), 0.01);
+    for (int i = 0; i < viewer.feeling()->felt().count; ++i)
+        EXPECT_LE(viewer.feeling()->felt().dents[std::size_t(i)].depth, 0.0041f);
+    // A change of the scene that came later goes first.
+    viewer.change({"body.1.damping=3"});
+    viewer.undo();
+    viewer.advance(1);
+    const int both = lasting();
+    viewer.undo();
+    EXPECT_TRUE(until([&] { return lasting() < both; }));
+    EXPECT_GT(lasting(), 0);
+    EXPECT_TRUE(viewer.can_undo());
+    viewer.restart();
+    EXPECT_TRUE(until([&] { return lasting() == 0; }));
+    EXPECT_FALSE(viewer.can_undo());
+    viewer.options.paused = true;
+    EXPECT_TRUE(difference(viewer.image(), untouched) < 0.02);
+}
+
+TEST_F(ViewerTest, ASliderLeavesTheHandsDeviceOpen) {
+    open("box", {"simulation.gravity=[0,0,0]"});
+    viewer.options.mode = Mode::dent;
+    viewer.advance(1);
+    ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
+    const FeelingHand* hand = viewer.feeling();
+    const LoopTiming* timing = &hand->timing();
+    for (int i = 1; i <= 3; ++i) {
+        viewer.change({"body.1.touch.width=0.00" + std::to_string(i)}, i > 1);
+        viewer.options.tip = 0.002f * float(i);
+        viewer.advance(1);
+        EXPECT_EQ(viewer.feeling(), hand);
+        EXPECT_EQ(&viewer.feeling()->timing(), timing);
+    }
+    viewer.change({"body.1.mapping=\"one-to-one\""});  // how surfaces hang, too
+    viewer.advance(1);
+    EXPECT_EQ(viewer.feeling(), hand);
+    EXPECT_TRUE(viewer.message().text.find("error") == std::string::npos);
+}
+
+// All of a picture is of one tick, though the loop goes on.
+TEST_F(ViewerTest, APictureShowsOneTick) {
+    open("box", {"simulation.gravity=[0,0,0]"});
+    viewer.options.mode = Mode::dent;
+    viewer.move_pointer(middle());
+    viewer.advance(1);
+    ASSERT_TRUE(viewer.feeling());
+    const double start = now();
+    while (viewer.feeling()->felt().time == 0 && now() - start < 20) viewer.advance(1);
+    const double time = viewer.feeling()->felt().time;
+    const auto ticks = viewer.feeling()->timing().periods.count();
+    while (viewer.feeling()->timing().periods.count() < ticks + 5 && now() - start < 40) viewer.image();
+    EXPECT_EQ(viewer.feeling()->felt().time, time);
+    viewer.advance(1);
+    EXPECT_GT(viewer.feeling()->felt().time, time);
+}
+
 TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     open("box", {"simulation.gravity=[0,0,0]"});
     const Scratch scratch;

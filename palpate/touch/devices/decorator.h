@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/base/error.h"
 #include "palpate/touch/device.h"
 
 #include <memory>
@@ -10,7 +11,10 @@ namespace palpate {
 /// of the five methods in which it does.
 class Decorator : public Device {
  public:
-    explicit Decorator(std::unique_ptr<Device> inner) : inner_(std::move(inner)) {}
+    /// Throws Error if there is none inside.
+    explicit Decorator(std::unique_ptr<Device> inner) : inner_(std::move(inner)) {
+        if (!inner_) throw Error("no device", "what goes around one", "make it before");
+    }
 
     DeviceSpec spec() const override { return inner_->spec(); }
     void open() override { inner_->open(); }

@@ -1,14 +1,15 @@
 #include "palpate/touch/devices/faulty.h"
 
-#include "palpate/base/error.h"
-
 #include <limits>
 
 namespace palpate {
 
 Faulty::Faulty(std::unique_ptr<Device> inner, std::vector<Fault> faults, std::function<void(double)> sleep)
     : Decorator(std::move(inner)), faults_(std::move(faults)), sleep_(std::move(sleep)) {
-    if (!sleep_) throw Error("no way to sleep", "a faulty device", "hand it a function that does");
+    for (const Fault& fault : faults_)
+        if (!(fault.from <= fault.to))
+            throw Error("a fault that is over before it begins", spec().name, "give it times that rise");
+    if (!sleep_) throw Error("no way to pass a stall", spec().name, "say how the clock sleeps");
 }
 
 void Faulty::open() {

@@ -25,7 +25,8 @@ struct Fault {
 /// Any device that fails on schedule, to see what a loop makes of it.
 class Faulty final : public Decorator {
  public:
-    /// `sleep`: how a stall passes so many seconds, on the clock that the test has.
+    /// `sleep`: how a stall passes so many seconds, on the clock that the test has. Throws Error if there is
+    /// none, or if a fault ends before it begins.
     Faulty(std::unique_ptr<Device> inner, std::vector<Fault> faults,
            std::function<void(double seconds)> sleep);
 

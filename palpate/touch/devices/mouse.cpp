@@ -36,16 +36,26 @@ void Mouse::point(const PointerEvent& event) noexcept {
     shared_.store(telling_);
 }
 
+void Mouse::place(const PointerEvent& event) noexcept {
+    telling_.placed = event;
+    ++telling_.placings;
+    point(event);
+}
+
 void Mouse::look(const Camera& camera, ivec2 size) noexcept {
     telling_.camera = camera;
     telling_.size = size;
-    ++telling_.looks;
+    telling_.placed = telling_.event;
+    ++telling_.placings;
     shared_.store(telling_);
 }
 
 void Mouse::open() {
     if (!(settings_.smoothing > 0 && std::isfinite(settings_.smoothing)))
         throw Error("a smoothing that is no time", "mouse", "give it in s, above 0");
+    if (!std::isfinite(settings_.notch)) throw Error("a notch that is no length", "mouse", "give it in m");
+    for (const PointerEvent& event : replay_)
+        if (!std::isfinite(event.time)) throw Error("an event without a time", "mouse", "give it in s");
     const auto later = [](const PointerEvent& a, const PointerEvent& b) { return a.time < b.time; };
     if (!std::is_sorted(replay_.begin(), replay_.end(), later))
         throw Error("events that go back in time", "mouse", "sort them");
@@ -66,8 +76,15 @@ bool Mouse::read(double now, Hand& hand) noexcept {
         take(told, *start_ + told.event.time, now, next_ == 0);
     }
     Told told = told_;
-    if (shared_.try_load(told) && (told.events != told_.events || told.looks != told_.looks))
-        take(told, told.event.time, now, told_.events == 0 || told.looks != told_.looks);
+    if (shared_.try_load(told) && (told.events != told_.events || told.placings != told_.placings)) {
+        const bool is_first = told_.events == 0 && told.placings == told_.placings;
+        if (told.placings != told_.placings) {
+            Told there = told;
+            there.event = told.placed;
+            take(there, there.event.time, now, true);
+        }
+        take(told, told.event.time, now, is_first);
+    }
     advance(now);
     hand = {.position = vec3(target_ + swing_.offset),
             .time = now,

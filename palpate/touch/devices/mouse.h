@@ -41,6 +41,9 @@ class Mouse final : public Device {
     /// The pointer has moved, or a button or the wheel has. Its time counts as far as it lies between the
     /// last two reads.
     void point(const PointerEvent& event) noexcept;
+    /// The same, and the hand is there at once, `placed` anew: it does not go there through what lies
+    /// between. Where point() comes at once after it, it goes on from there.
+    void place(const PointerEvent& event) noexcept;
     /// The picture is seen from elsewhere now, or has another size; the hand is `placed` anew under the
     /// pointer.
     void look(const Camera& camera, ivec2 size) noexcept;
@@ -55,9 +58,10 @@ class Mouse final : public Device {
     // All that the window's thread tells; how often says what is new in it.
     struct Told {
         PointerEvent event;
+        PointerEvent placed;  // where it was placed the last time, before it went to where it is
         Camera camera;
         ivec2 size = ivec2(1);
-        unsigned events = 0, looks = 0;
+        unsigned events = 0, placings = 0;
     };
 
     void take(const Told& told, double time, double now, bool anew);

@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate {
 
@@ -10,6 +11,12 @@ Playback::Playback(Log log) : log_(std::move(log)) {}
 
 void Playback::open() {
     if (log_.ticks.empty()) throw Error("a log without a tick", log_.device, "record some");
+    for (std::size_t i = 0; i < log_.ticks.size(); ++i) {
+        const Tick& tick = log_.ticks[i];
+        const bool rises = i == 0 || tick.now >= log_.ticks[i - 1].now;
+        if (!std::isfinite(tick.now) || !std::isfinite(tick.hand.time) || !rises)
+            throw Error("a log whose time does not go on", log_.device, "give its ticks in their order");
+    }
     later_.reset();
     at_ = 0;
 }

@@ -1,25 +1,14 @@
 #include "palpate/touch/devices/recorder.h"
 
-#include "palpate/base/error.h"
-
 #include <cmath>
 
 namespace palpate {
 
-namespace {
-
-std::size_t most_ticks(double seconds, double rate) {
-    const double ticks = std::ceil(seconds * rate);
-    if (!(seconds >= 0 && rate > 0 && ticks < 1e8))
-        throw Error("a time or a rate below zero, or too long a time", "the recorder of a device",
-                    "give it seconds, and ticks a second, of which 100 million are too many");
-    return std::size_t(ticks);
-}
-
-}  // namespace
-
-Recorder::Recorder(std::unique_ptr<Device> inner, double seconds, double rate)
-    : Decorator(std::move(inner)), most_(most_ticks(seconds, rate)) {
+Recorder::Recorder(std::unique_ptr<Device> inner, double seconds, double rate) : Decorator(std::move(inner)) {
+    constexpr double most = 1e9;  // ticks: days of them
+    if (!(seconds >= 0 && rate > 0 && seconds * rate <= most))
+        throw Error("no length of a record", spec().name, "give it in s, and a rate in Hz above 0");
+    most_ = std::size_t(std::ceil(seconds * rate));
     log_.device = spec().name;
     log_.rate = rate;
     log_.ticks.reserve(most_);

@@ -9,7 +9,8 @@ namespace palpate {
 /// Writes down all that a device says and is told. A tick in which it is gone has no line.
 class Recorder final : public Decorator {
  public:
-    /// Room for all of `seconds` at `rate` Hz is made here; nothing is allocated later.
+    /// Room for all of `seconds` at `rate` Hz is made here; nothing is allocated later. Throws Error if that
+    /// is no length.
     Recorder(std::unique_ptr<Device> inner, double seconds, double rate = 1000);
 
     bool read(double now, Hand& hand) noexcept override;
@@ -21,7 +22,7 @@ class Recorder final : public Decorator {
 
  private:
     Log log_;
-    std::size_t most_, missed_ = 0;
+    std::size_t most_ = 0, missed_ = 0;
     bool noted_ = false;  // whether the tick that now is has a line
 };
 

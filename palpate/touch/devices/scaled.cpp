@@ -2,7 +2,6 @@
 
 #include "palpate/base/error.h"
 
-#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -10,9 +9,11 @@ namespace {
 
 float forces(const Scale& scale) { return scale.forces > 0 ? scale.forces : 1 / scale.motion; }
 
-bool usable(const Scale& scale) {
-    return scale.motion > 0 && scale.forces >= 0 && std::isfinite(scale.motion + scale.forces) &&
-           std::isfinite(dot(scale.about, scale.about));
+void check(const Scale& scale, const std::string& device) {
+    const auto is_usable = [](float factor) { return factor >= 1e-6f && factor <= 1e6f; };
+    if (!is_usable(scale.motion) || !(scale.forces == 0 || is_usable(scale.forces)) ||
+        !std::isfinite(dot(scale.about, scale.about)))
+        throw Error("a scale that cannot be", device, "give it a point and factors from 1e-6 to 1e6");
 }
 
 }  // namespace
@@ -20,8 +21,8 @@ bool usable(const Scale& scale) {
 Scaled::Scaled(std::unique_ptr<Device> inner, const Scale& scale)
     : Decorator(std::move(inner)), first_(scale), setting_{scale}, shared_(setting_), used_(setting_) {}
 
-void Scaled::set(const Scale& scale) noexcept {
-    assert(usable(scale));
+void Scaled::set(const Scale& scale) {
+    check(scale, Decorator::spec().name);
     setting_.scale = scale;
     ++setting_.times;
     shared_.store(setting_);
@@ -37,7 +38,7 @@ DeviceSpec Scaled::spec() const {
 
 void Scaled::open() {
     const DeviceSpec spec = Decorator::spec();
-    if (!usable(first_)) throw Error("a scale that cannot be", spec.name, "give it factors above 0");
+    check(first_, spec.name);
     peak_force_ = spec.peak_force;
     Decorator::open();
 }
@@ -50,6 +51,8 @@ bool Scaled::read(double now, Hand& hand) noexcept {
     hand = real;
     hand.position = scale.about + scale.motion * (real.position - scale.about);
     hand.placed += used_.times;
+    hand.forces *= forces(scale) / forces(first_);
+    hand.motion *= scale.motion / first_.motion;
     return true;
 }
 

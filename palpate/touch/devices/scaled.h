@@ -5,20 +5,23 @@
 namespace palpate {
 
 /// How much farther a hand goes in the scene than at its device, and how hard the scene's forces are there.
+/// Both are from 1e-6 to 1e6.
 struct Scale {
     vec3 about = vec3(0);  // the point, m, that is the same in both
-    float motion = 1;      // above 0
+    float motion = 1;
     float forces = 0;  // N at the device for each N in the scene; 0: 1 / motion, by which a wall is as stiff
                        // in N/m at the device as in the scene
 };
 
-/// Any device in another scale.
+/// Any device in another scale. Its limits stay the device's own, whatever the scale becomes: each sample
+/// says what a newton and a metre are there now (Hand::forces, motion), and Touch reckons with that.
 class Scaled final : public Decorator {
  public:
     Scaled(std::unique_ptr<Device> inner, const Scale& scale);
 
     /// From the next read on; the hand is `placed` anew. From one thread at a time, any but the loop's too.
-    void set(const Scale& scale) noexcept;
+    /// Throws Error if it is out of bounds, and then all is as it was.
+    void set(const Scale& scale);
 
     /// In the scene's newtons and metres, by the scale that it was made with.
     DeviceSpec spec() const override;

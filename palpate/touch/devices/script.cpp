@@ -1,13 +1,11 @@
 #include "palpate/touch/devices/script.h"
 
-#include "palpate/base/error.h"
-
 namespace palpate {
 
 Script::Script(Path path) : path_(std::move(path)) {}
 
 void Script::open() {
-    if (path_.empty()) throw Error("no waypoint", "script", "give it a path of one at least");
+    check(path_, "script");
     start_.reset();
 }
 

@@ -47,7 +47,7 @@ void VirtualHand::open() {
     auto require = [&](bool holds, const char* what, const char* remedy) {
         if (!holds) throw Error(what, "virtual hand", remedy);
     };
-    require(!plan_.empty(), "no plan of motion", "give it a path of one waypoint at least");
+    check(plan_, "virtual hand");
     require(
         s.mass > 0 && s.stiffness > 0 && s.damping >= 0 && std::isfinite(s.mass + s.stiffness + s.damping),
         "a hand that cannot be", "give it a mass and a stiffness above 0 and a damping that is not below");

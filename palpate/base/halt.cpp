@@ -1,0 +1,130 @@
+#include "palpate/base/halt.h"
+
+#include "palpate/base/error.h"
+
+#include <poll.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <mutex>
+
+namespace palpate {
+namespace {
+
+// All that end a process unless somebody handles them; without SIGTRAP, which is a debugger's.
+constexpr int ending[] = {SIGINT, SIGTERM, SIGHUP,  SIGQUIT, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,    SIGILL,
+                          SIGSYS, SIGPIPE, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ, SIGVTALRM, SIGPROF};
+constexpr int pausing[] = {SIGTSTP, SIGTTIN, SIGTTOU};
+constexpr std::size_t alternate_stack = 1 << 16;  // bytes, for the handler where the stack itself overflowed
+
+// A handler of signals finds its data only at places that do not move.
+std::array<std::atomic<void (*)(Halt) noexcept>, 8> acts{};
+std::array<struct sigaction, NSIG> before{};  // what handled each signal
+std::atomic<pid_t> process = 0;               // the one whose halt this is about
+std::atomic<pid_t> acting = 0;                // the thread that calls the acts just now
+
+pid_t this_thread() { return pid_t(syscall(SYS_gettid)); }
+
+void wait_a_moment() { poll(nullptr, 0, 1); }
+
+// By one thread at a time: others wait for it, so that none ends the process meanwhile. Not again on a thread
+// whose act crashed.
+void call_acts(Halt halt) {
+    if (getpid() != process) return;
+    pid_t nobody = 0;
+    if (!acting.compare_exchange_strong(nobody, this_thread())) {
+        if (nobody == this_thread()) return;
+        for (int ms = 0; ms < 1000 && acting != 0; ++ms) wait_a_moment();
+        return;
+    }
+    for (auto& act : acts)
+        if (auto* call = act.load()) call(halt);
+    acting = 0;
+}
+
+// As if nobody had listened: it ends the process, or pauses it, and then this returns when it goes on.
+void do_as_usual(int signal) {
+    struct sigaction usual {
+    }, ours{};
+    usual.sa_handler = SIG_DFL;
+    sigaction(signal, &usual, &ours);
+    sigset_t now, masked;
+    sigemptyset(&now);
+    sigaddset(&now, signal);
+    raise(signal);
+    pthread_sigmask(SIG_UNBLOCK, &now, &masked);
+    pthread_sigmask(SIG_SETMASK, &masked, nullptr);
+    sigaction(signal, &ours, nullptr);
+}
+
+void pass_on(int signal, siginfo_t* about, void* context) {
+    struct sigaction& earlier = before[std::size_t(signal)];
+    const struct sigaction it = earlier;
+    if (!(it.sa_flags & SA_SIGINFO) && it.sa_handler == SIG_DFL) return do_as_usual(signal);
+    if (it.sa_flags & SA_RESETHAND) {
+        earlier.sa_flags = 0;
+        earlier.sa_handler = SIG_DFL;
+    }
+    if (it.sa_flags & SA_SIGINFO)
+        it.sa_sigaction(signal, about, context);
+    else
+        it.sa_handler(signal);
+}
+
+void halt(int signal, siginfo_t* about, void* context) {
+    const int error = errno;
+    const bool pauses = signal == SIGTSTP || signal == SIGTTIN || signal == SIGTTOU;
+    call_acts(pauses ? Halt::paused : Halt::ended);
+    pass_on(signal, about, context);
+    errno = error;
+}
+
+void listen(int signal) {
+    struct sigaction& earlier = before[std::size_t(signal)];
+    if (sigaction(signal, nullptr, &earlier) != 0) return;
+    const bool is_ignored = !(earlier.sa_flags & SA_SIGINFO) && earlier.sa_handler == SIG_IGN;
+    if (is_ignored) return;
+    const bool is_usual = !(earlier.sa_flags & SA_SIGINFO) && earlier.sa_handler == SIG_DFL;
+    struct sigaction ours = earlier;  // with what else the application had wished
+    ours.sa_sigaction = halt;
+    ours.sa_flags = (earlier.sa_flags & ~int(SA_RESETHAND)) | SA_SIGINFO | SA_ONSTACK;
+    if (is_usual) ours.sa_flags |= SA_RESTART;
+    sigaction(signal, &ours, nullptr);
+}
+
+void make_alternate_stack() {
+    alignas(16) static char room[alternate_stack];
+    stack_t has{}, made{};
+    if (sigaltstack(nullptr, &has) != 0 || !(has.ss_flags & SS_DISABLE)) return;
+    made.ss_sp = room;
+    made.ss_size = sizeof room;
+    sigaltstack(&made, nullptr);
+}
+
+void listen_to_all() {
+    make_alternate_stack();
+    for (int signal : ending) listen(signal);
+    for (int signal : pausing) listen(signal);
+    std::atexit([] { call_acts(Halt::ended); });
+    std::at_quick_exit([] { call_acts(Halt::ended); });
+}
+
+}  // namespace
+
+void on_halt(void (*act)(Halt) noexcept) {
+    static std::once_flag once;
+    std::call_once(once, listen_to_all);
+    process = getpid();
+    for (auto& place : acts) {
+        void (*there)(Halt) noexcept = nullptr;
+        if (place.compare_exchange_strong(there, act) || there == act) return;
+    }
+    throw Error("too many acts before a halt", "this program", "put some of them into one");
+}
+
+}  // namespace palpate

@@ -1,0 +1,57 @@
+#include "palpate/touch/emergency.h"
+
+#include "palpate/base/error.h"
+#include "palpate/base/halt.h"
+#include "palpate/touch/touch.h"
+
+#include <poll.h>
+
+#include <array>
+#include <atomic>
+#include <thread>
+
+namespace palpate {
+namespace {
+
+constexpr int longest_tick = 20;  // ms, that a tick under way is waited for
+
+// A handler of signals finds them only at places that do not move.
+std::array<std::atomic<Touch*>, 256> hands{};
+std::atomic<int> visitors = 0;  // threads that may use one of them just now
+
+template <class Act>
+void for_each_hand(const Act& act) {
+    for (auto& place : hands)
+        if (Touch* hand = place.load()) act(*hand);
+}
+
+}  // namespace
+
+void let_go_of_all() noexcept {
+    ++visitors;
+    for_each_hand([](Touch& hand) { hand.let_go(); });
+    // A tick that was under way may have written after that what it had reckoned before.
+    for_each_hand([](Touch& hand) {
+        for (int ms = 0; ms < longest_tick && hand.is_ticking(); ++ms) poll(nullptr, 0, 1);
+        hand.let_go();
+    });
+    --visitors;
+}
+
+void let_go_at_halt() {
+    on_halt([](Halt) noexcept { let_go_of_all(); });
+}
+
+void add_hand(Touch& hand) {
+    for (auto& place : hands)
+        if (Touch* nobody = nullptr; place.compare_exchange_strong(nobody, &hand)) return;
+    throw Error("too many hands at once", hand.device().name, "end some that are not needed any more");
+}
+
+void remove_hand(Touch& hand) noexcept {
+    for (auto& place : hands)
+        if (Touch* same = &hand; place.compare_exchange_strong(same, nullptr)) break;
+    while (visitors > 0) std::this_thread::yield();
+}
+
+}  // namespace palpate

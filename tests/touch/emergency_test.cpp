@@ -1,0 +1,204 @@
+// Whatever ends the process, no motor goes on holding a force: seen from outside, in memory that the motor of
+// a copy of this process shares with it.
+#include "palpate/touch/emergency.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/touch/loop.h"
+#include "tests/shapes.h"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <new>
+#include <stdexcept>
+#include <thread>
+
+namespace palpate {
+namespace {
+
+// It holds what it was told last, whatever becomes of who told it, as hardware does.
+struct Motor {
+    std::atomic<float> holds = 0;  // N
+    std::atomic<int> stops = 0, pushed = 0;
+};
+
+// A hand that is above a surface and then in it.
+class Pressing final : public Device {
+ public:
+    explicit Pressing(Motor& motor) : motor_(motor) {}
+
+    DeviceSpec spec() const override { return {.name = "motor"}; }
+    void open() override {}
+    bool read(double now, Hand& hand) noexcept override {
+        if (start_ < 0) start_ = now;
+        const double depth = std::clamp((now - start_ - 0.05) / 0.1, -0.2, 1.0) * 0.005;
+        hand = {.position = vec3(0, 0.003f - float(depth), 0), .time = now};
+        return true;
+    }
+    bool write(vec3 force) noexcept override {
+        motor_.holds = glm::length(force);
+        if (motor_.holds > 0.5f) motor_.pushed = 1;
+        return true;
+    }
+    void stop() noexcept override {
+        motor_.holds = 0;
+        ++motor_.stops;
+    }
+
+ private:
+    Motor& motor_;
+    double start_ = -1;  // s
+};
+
+TouchSettings at_once() {
+    return {.radius = 0.003, .feels = {{.stiffness = 300}}, .safety = {.calm = 0, .ramp = 0}};
+}
+
+class Emergency : public testing::Test {
+ protected:
+    void SetUp() override {
+        void* room = mmap(nullptr, sizeof(Motor), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        ASSERT_NE(room, MAP_FAILED);
+        motor_ = new (room) Motor;
+    }
+    void TearDown() override { munmap(motor_, sizeof(Motor)); }
+
+    // A copy that pushes, and then does that.
+    pid_t start(bool lets_go, const std::function<void()>& then) {
+        motor_->pushed = 0;
+        const pid_t copy = fork();
+        if (copy != 0) return copy;
+        alarm(30);      // whatever happens
+        setpgid(0, 0);  // so that a terminal's signals may pause it
+        if (!std::freopen("/dev/null", "w", stderr)) _exit(9);
+        if (lets_go) let_go_at_halt();
+        const Mesh mesh = block(vec3(-0.1f, -0.05f, -0.1f), vec3(0.1f, 0, 0.1f), 8);
+        const Touchable one[] = {{mesh.positions, mesh.triangles}};
+        Touch touch(std::make_unique<Pressing>(*motor_), at_once());
+        touch.feel(Patch(one));
+        const TouchLoop loop({&touch});
+        while (motor_->pushed == 0) usleep(1000);
+        then();
+        while (true) pause();
+    }
+    void wait_until_it_pushes() {
+        for (int ms = 0; ms < 20'000 && motor_->pushed == 0; ++ms) usleep(1000);
+        ASSERT_EQ(motor_->pushed, 1);
+    }
+
+    Motor* motor_ = nullptr;
+};
+
+volatile int* nowhere = nullptr;
+
+TEST_F(Emergency, NoMotorHoldsAForceAfterTheProcess) {
+    const std::pair<const char*, std::function<void()>> ends[] = {
+        {"SIGINT", [] { kill(getpid(), SIGINT); }},
+        {"SIGTERM", [] { kill(getpid(), SIGTERM); }},
+        {"SIGSEGV", [] { *nowhere = 1; }},
+        {"abort", [] { std::abort(); }},
+        {"nobody catches it", [] { std::thread([] { throw std::runtime_error("so"); }).join(); }},
+        {"quick_exit", [] { std::quick_exit(0); }},
+    };
+    for (const auto& [name, end] : ends) {
+        const pid_t copy = start(true, end);
+        wait_until_it_pushes();
+        int status = 0;
+        waitpid(copy, &status, 0);
+        EXPECT_EQ(motor_->holds, 0) << name;
+    }
+}
+
+// Else the test above would show nothing.
+TEST_F(Emergency, UnaskedTheLibraryTakesNoSignals) {
+    const pid_t copy = start(false, [] { kill(getpid(), SIGKILL); });
+    wait_until_it_pushes();
+    int status = 0;
+    waitpid(copy, &status, 0);
+    EXPECT_GT(motor_->holds, 0);
+}
+
+TEST_F(Emergency, APausedProcessHoldsNobodyAndBeginsAnew) {
+    const pid_t copy = start(true, [] {});
+    wait_until_it_pushes();
+    int status = 0;
+    kill(copy, SIGTSTP);
+    waitpid(copy, &status, WUNTRACED);
+    ASSERT_TRUE(WIFSTOPPED(status));
+    EXPECT_EQ(motor_->holds, 0);
+    // The hand is still in the surface: no force until it was out.
+    kill(copy, SIGCONT);
+    for (int i = 0; i < 50; ++i) {
+        usleep(1000);
+        EXPECT_EQ(motor_->holds, 0);
+    }
+    kill(copy, SIGKILL);
+    waitpid(copy, &status, 0);
+}
+
+// SIGSTOP cannot be caught. But when it goes on it begins anew.
+TEST_F(Emergency, AfterAStopThatNobodyHeardItBeginsAnew) {
+    const pid_t copy = start(true, [] {});
+    wait_until_it_pushes();
+    int status = 0;
+    kill(copy, SIGSTOP);
+    waitpid(copy, &status, WUNTRACED);
+    usleep(30'000);
+    kill(copy, SIGCONT);
+    for (int ms = 0; ms < 10'000 && motor_->holds > 0; ++ms) usleep(1000);
+    EXPECT_EQ(motor_->holds, 0);
+    kill(copy, SIGKILL);
+    waitpid(copy, &status, 0);
+}
+
+TEST_F(Emergency, LetsGoOfAllHandsThatAreThereAndOfNoOthers) {
+    Motor motors[2];
+    const Mesh mesh = block(vec3(-0.1f, -0.05f, -0.1f), vec3(0.1f, 0, 0.1f), 8);
+    const Touchable surface[] = {{mesh.positions, mesh.triangles}};
+    Touch one(std::make_unique<Pressing>(motors[0]), at_once());
+    {
+        Touch two(std::make_unique<Pressing>(motors[1]), at_once());
+        for (Touch* touch : {&one, &two}) touch->feel(Patch(surface));
+        for (int i = 1; i < 200; ++i) {
+            one.tick(i * 1e-3);
+            two.tick(i * 1e-3);
+        }
+        EXPECT_GT(motors[0].holds, 1);
+        EXPECT_GT(motors[1].holds, 1);
+        let_go_of_all();
+        EXPECT_EQ(motors[0].holds, 0);
+        EXPECT_EQ(motors[1].holds, 0);
+        for (int i = 200; i < 210; ++i) {
+            one.tick(i * 1e-3);
+            EXPECT_EQ(motors[0].holds, 0);
+        }
+    }
+    const int stops = motors[1].stops;
+    let_go_of_all();
+    EXPECT_EQ(motors[1].stops, stops);
+}
+
+// Hands come and go while another thread lets go of all; for the thread sanitizer too.
+TEST_F(Emergency, HandsMayComeAndGoMeanwhile) {
+    std::atomic<bool> ends = false;
+    std::thread other([&] {
+        while (!ends) let_go_of_all();
+    });
+    Motor motor;
+    for (int i = 0; i < 200; ++i) {
+        Touch touch(std::make_unique<Pressing>(motor), at_once());
+        touch.tick(1);
+    }
+    ends = true;
+    other.join();
+}
+
+}  // namespace
+}  // namespace palpate
