@@ -14,12 +14,12 @@ palpate_needs(PkgConfig)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET GLOBAL libhwy)
 
 # mesh
-set(palpate_itk ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGDCM)
 list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)  # where Debian puts it
 palpate_needs(ZLIB)
 palpate_needs(assimp)
 palpate_needs(meshoptimizer)
-palpate_needs(ITK 5 COMPONENTS ${palpate_itk})
+palpate_needs(Boost COMPONENTS iostreams)
+palpate_needs(GDCM)
 palpate_needs(TBB)
 palpate_needs(OpenVDB)
 

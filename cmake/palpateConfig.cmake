@@ -5,9 +5,5 @@ macro(palpate_needs)
     find_dependency(${ARGV})
 endmacro()
 
-get_property(palpate_languages GLOBAL PROPERTY ENABLED_LANGUAGES)
-if(NOT C IN_LIST palpate_languages)
-    enable_language(C)  # ITK's own CMake files want it
-endif()
 include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/palpateTargets.cmake)

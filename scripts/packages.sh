@@ -4,8 +4,8 @@ build_packages=(
     g++ cmake ninja-build ccache pkg-config                                   # tools
     libglm-dev libfmt-dev                                                     # vectors, text
     libhwy-dev                                                                # as many numbers at once as the CPU can
-    libinsighttoolkit5-dev libgdcm-dev                                        # volumes
-    libopenvdb-dev libboost-iostreams-dev libtbb-dev                          # solids
+    libgdcm-dev                                                               # DICOM
+    libopenvdb-dev libboost-iostreams-dev libtbb-dev                          # solids, archives
     libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures
     libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver
     libglfw3-dev libimgui-dev fonts-dejavu-core                               # the viewer
@@ -14,8 +14,8 @@ build_packages=(
 data_packages=(mricron-data)  # the brain and the head
 film_packages=(ffmpeg)
 fuzz_packages=(clang libclang-rt-14-dev)           # scripts/fuzz
-check_packages=(  # tests; the headers' pages; odd files; what palpate bench compares with; a display without a screen, and its events
-    libgtest-dev doxygen assimp-testmodels libbullet-dev xvfb libxtst-dev
+check_packages=(  # tests; the headers' pages; odd files, volumes of another writer; what palpate bench compares with; a display without a screen, and its events
+    libgtest-dev doxygen assimp-testmodels libinsighttoolkit5-dev libbullet-dev xvfb libxtst-dev
 )
 fresh_packages=(debootstrap git)                   # scripts/fresh
 

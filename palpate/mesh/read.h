@@ -3,6 +3,7 @@
 #include "palpate/mesh/volume.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,28 +34,33 @@ Mesh read_mesh(const std::filesystem::path& path, Units units, std::vector<std::
 Mesh parse_mesh(std::string_view bytes, const std::string& name, Units units,
                 std::vector<std::string>* notes = nullptr);
 
-/// True if a name ends like a volume's (.nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .dcm), if the file bears
-/// DICOM's mark, or if it is a folder with such a file in it.
+/// True if a name ends like a volume's (.nii, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, each also with .gz
+/// behind; .dcm), if the file is DICOM by what it holds, or if it is a folder.
 bool is_volume(const std::filesystem::path& path);
 
-/// Reads a scalar volume of any kind of number: NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr), MetaImage
-/// (.mha, .mhd), or a DICOM series: the folder it lies in, or one of its files if the folder holds several
-/// series. Files that are no pictures are skipped, and so are series of a single slice unless named. DICOM's
-/// slope and intercept are applied (so that CT is in Hounsfield units), and slices lie from the lowest to the
-/// highest along the cross product of their rows and columns. Where the grid lies is kept as ITK gives it.
-/// Spacing and origin are in `units`; NIfTI and DICOM mean millimetres, and a NIfTI file that says that it is
-/// in metres or micrometres is brought to millimetres first.
+/// Reads a scalar volume of any kind of number: NIfTI-1 and -2 (.nii, or a pair .hdr and .img), Analyze 7.5,
+/// NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), or a DICOM series: the folder it lies in, or one above, or
+/// one of its files. A gzip is known by its content.
+///
+/// Lengths are in `units`. If those are not given they are in what the file states (NIfTI, NRRD and MetaImage
+/// may; DICOM is in millimetres), or else in millimetres. Slope and intercept are applied, slice by slice, so
+/// that CT is in Hounsfield units, and MONOCHROME1 is not turned over. Of several time points, echoes or
+/// other volumes in one file or series the first is taken, or the one that the named slice belongs to.
+/// NIfTI's sform counts before its qform, and both before the spacing alone. DICOM's slices lie from the
+/// lowest to the highest along the cross product of their rows and columns. What is no slice of the series is
+/// skipped, and so are series of a single slice unless named; a series is parted by size, spacing, angle and
+/// time, and the largest part, or the named slice's, is taken. A voxel without a finite value gets the lowest
+/// value (at most 0). `notes` gets a line on whatever was assumed, left out or changed so.
 ///
 /// Throws Error if a file is missing, truncated, damaged, claims more voxels than it holds or than 2^30, has
-/// values that are not finite, voxels of no width, axes that are not at right angles (within 1e-3), several
-/// numbers a voxel, or is not three-dimensional; if a folder holds several series (it lists them) or none; if
-/// slices of a series differ in size, spacing or direction, lie in the same place, or are not evenly spaced
-/// (within 1 %; it names the two between which one is missing); if they shift sideways, as with a tilted
-/// gantry.
+/// no finite value, voxels of no width, axes that are not at right angles (within 1e-3), several numbers a
+/// voxel, or is not three-dimensional; if a folder holds several series (it lists them) or none; if slices do
+/// not lie evenly (within a tenth of their distance, or what the decimals of their positions can say; it
+/// names the two between which one is missing); if they shift sideways, as with a tilted gantry.
 ///
-/// Only files of which enough is really there are read. ITK reads them in a process of its own, which a
-/// damaged file may crash without harm. Until the volume is there, 8 bytes a voxel are held at most, or twice
-/// as many as the file's own numbers take if that is more; after that 4.
-Volume read_volume(const std::filesystem::path& path, Units units = Units::millimetres);
+/// GDCM reads DICOM in processes of its own, which a damaged file may crash without harm. Until the volume is
+/// there, 8 bytes a voxel are held at most; after that 4.
+Volume read_volume(const std::filesystem::path& path, std::optional<Units> units = {},
+                   std::vector<std::string>* notes = nullptr);
 
 }  // namespace palpate

@@ -58,8 +58,12 @@ std::vector<int> chosen(const Body& body, const Choice& choice, vec3 down, const
     return all;
 }
 
-Volume read_labels(const Region& region, const BodyRecipe& recipe, const std::filesystem::path& folder) {
-    Volume labels = read_volume(find_data(region.labels, folder), recipe.units.value_or(Units::millimetres));
+// `where` names the region in notes.
+Volume read_labels(const Region& region, const BodyRecipe& recipe, const std::filesystem::path& folder,
+                   const std::string& where, std::vector<std::string>& notes) {
+    std::vector<std::string> of_file;
+    Volume labels = read_volume(find_data(region.labels, folder), recipe.units, &of_file);
+    for (const std::string& note : of_file) notes.push_back(where + ", labels: " + note);
     const mat3 turned = turn(recipe.rotate);
     labels.origin = turned * labels.origin + recipe.move;
     labels.direction = turned * labels.direction;
@@ -83,7 +87,7 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
         std::vector<int> nodes = chosen(body, region.choice, down(scene), where, "", notes);
         if (!region.labels.empty()) {
             const auto labelled =
-                nodes_labelled(body, read_labels(region, recipe, scene.folder), *region.label);
+                nodes_labelled(body, read_labels(region, recipe, scene.folder, where, notes), *region.label);
             if (labelled.empty()) notes.push_back(where + ": label holds no node");
             nodes.insert(nodes.end(), labelled.begin(), labelled.end());
         }

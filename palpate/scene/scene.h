@@ -70,7 +70,7 @@ struct BodyRecipe {
     std::optional<ivec2> cloth;  // a rectangle of cloth
     bool sheet = false;          // the surface itself is cloth: a node a vertex, a spring an edge
     std::optional<float> iso;    // the value at the surface of a volume; else the one its values suggest
-    std::optional<Units> units;  // of the file; volumes default to millimetres, surfaces to metres
+    std::optional<Units> units;  // of the file; none: what a volume states, or millimetres; metres for a surface
     vec3 rotate = vec3(0);       // degrees about x, then y, then z
     float size = 0;              // m: after turning, scale it so that its longest side is this; 0 leaves it
     bool centre = false;         // then bring the middle of its box to the origin

@@ -48,7 +48,7 @@ float suggested(const Volume& volume, std::vector<std::string>& notes) {
 Mesh from_volume(Work& work) {
     const BodyRecipe& recipe = work.recipe;
     const Volume volume =
-        read_volume(find_data(recipe.volume, work.folder), recipe.units.value_or(Units::millimetres));
+        read_volume(find_data(recipe.volume, work.folder), recipe.units, &work.result.notes);
     work.tell("finding the surface", 0.1);
     const float iso = recipe.iso ? *recipe.iso : suggested(volume, work.result.notes);
     Mesh mesh = isosurface(volume, iso);

@@ -339,6 +339,26 @@ TEST_F(Hostile, Volumes) {
     expect_error("flat.nrrd", nrrd("16 16 16", "uint8", std::string(4096, 'x')));
 }
 
+// What a file leaves out is filled in, and said wherever it is read.
+TEST_F(Hostile, WhatAVolumeLeavesOutIsSaid) {
+    const std::string name = (scratch / "bare.nrrd").string(), note = "it states no spacing: 1 mm is assumed";
+    write_text(name, nrrd("16 16 16", "uint8", voxels()));
+    for (const std::string& arguments : {"info " + name, "info --json " + name,
+                                         "import " + name + " -o " + (scratch / "out.ply").string()}) {
+        const Outcome outcome = palpate(arguments);
+        EXPECT_EQ(outcome.status, 0) << outcome.said;
+        EXPECT_NE(outcome.said.find(note), std::string::npos) << outcome.said;
+    }
+    write_text(scratch / "scene.toml",
+               "[[body]]\nname = \"ball\"\nvolume = \"bare.nrrd\"\nyoungs_modulus = 5000\ndensity = 1000\n"
+               "nodes = 100\n");
+    const Outcome run = palpate("run " + (scratch / "scene.toml").string() + " --steps 1 --report " +
+                                (scratch / "report.json").string());
+    EXPECT_EQ(run.status, 0) << run.said;
+    EXPECT_NE(run.said.find("note: body ball: " + note), std::string::npos) << run.said;
+    EXPECT_NE(read_text(scratch / "report.json").find("body ball: " + note), std::string::npos);
+}
+
 TEST_F(Hostile, NothingOfThisTookMuchMemory) {
     for (const std::string ending : endings) import("good" + ending, file_of(ball, ending));
     rusage used{};

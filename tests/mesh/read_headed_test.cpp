@@ -2,9 +2,11 @@
 #include "palpate/mesh/isosurface.h"
 #include "palpate/mesh/read.h"
 #include "tests/mesh/itk_files.h"
+#include "tests/mesh/packed.h"
 #include "tests/mesh/reading.h"
 #include "tests/scratch.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -110,7 +112,7 @@ TEST(ReadHeaded, TurnsEverySpaceToOurAxes) {
                   {"right-anterior-superior", vec3(-1, -1, 1)}, {"RAS", vec3(-1, -1, 1)},
                   {"left-anterior-superior", vec3(1, -1, 1)},   {"LAS", vec3(1, -1, 1)}};
     for (auto [name, turn] : spaces) {
-        put(scratch / "a.nrrd", nrrd("uchar", "raw", "space: " + std::string(name) + "\n" + space) +
+        put(scratch / "a.nrrd", nrrd("uchar", "raw", fmt::format("space: {}\n{}", name, space)) +
                                     bytes_of<std::uint8_t>(count_up()));
         const Volume v = read_volume(scratch / "a.nrrd", Units::metres);
         EXPECT_LE(glm::distance(v.origin, turn * vec3(10, 20, 30)), 1e-5f) << name;
@@ -133,11 +135,12 @@ TEST(ReadHeaded, FindsVoxelsInAFileOfTheirOwn) {
         put(scratch / "a.nhdr", changed(header, "voxels.raw", other));
         EXPECT_THROW(read_volume(scratch / "a.nhdr"), Error) << other;
     }
-    EXPECT_HAS(volume_error(scratch / "a.nhdr", changed(header, "voxels.raw", "LIST")), "more than one file");
+    EXPECT_HAS(volume_error(scratch / "a.nhdr", changed(header, "voxels.raw", "LIST")), "an empty list");
     put(scratch / "voxels.raw", bytes_of<std::int16_t>(count_up()).substr(0, 47));
     for (const char* name : {"a.nhdr", "a.mhd"}) {
         put(scratch / "a.nhdr", header);
-        EXPECT_HAS(error_of(scratch / name, [&] { read_volume(scratch / name); }), "truncated") << name;
+        EXPECT_HAS(error_of(scratch / "voxels.raw", [&] { read_volume(scratch / name); }), "truncated")
+            << name;
     }
 }
 
@@ -163,7 +166,7 @@ TEST(ReadHeaded, RefusesLies) {
     EXPECT_HAS(sizes("1000 1000 1000"), "truncated");
     EXPECT_HAS(sizes("2 3 5"), "truncated");
     for (const char* numbers : {"0 3 4", "-2 3 4"}) EXPECT_HAS(sizes(numbers), "voxels wide");
-    for (const char* numbers : {"2 3", "2 3 4 1", "", "nan 3 4", "1e9999 3 4", "2,5 3 4"})
+    for (const char* numbers : {"2 3", "", "nan 3 4", "1e9999 3 4", "2,5 3 4", "2.5 3 4"})
         EXPECT_NE(sizes(numbers), "no error") << numbers;
     EXPECT_NE(volume_error(path, changed(whole, "uchar", "block")), "no error");
     EXPECT_NE(volume_error(path, changed(whole, "raw", "bzip2")), "no error");
@@ -177,7 +180,7 @@ TEST(ReadHeaded, RefusesLies) {
     const std::string image = metaimage("ElementType = MET_UCHAR") + bytes_of<std::uint8_t>(count_up());
     EXPECT_HAS(volume_error(meta, changed(image, "2 3 4", "65536 65536 256")), "more than 2^30");
     EXPECT_HAS(volume_error(meta, changed(image, "2 3 4", "1000 1000 1000")), "truncated");
-    EXPECT_HAS(volume_error(meta, changed(image, "2 3 4", "2 12")), "2 dimensions");
+    EXPECT_HAS(volume_error(meta, changed(image, "2 3 4", "2 12")), "2 sizes for 3 dimensions");
     EXPECT_NE(volume_error(meta, changed(image, "NDims = 3", "NDims = 7")), "no error");
     EXPECT_HAS(volume_error(meta, changed(image, "MET_UCHAR", "MET_UCHAR\nElementNumberOfChannels = 3")),
                "numbers a voxel");
@@ -198,25 +201,240 @@ TEST(ReadHeaded, RefusesGeometryThatIsNone) {
     for (const char* directions : {"(0,0,0) (0,1,0) (0,0,1)", "(nan,0,0) (0,1,0) (0,0,1)",
                                    "(inf,0,0) (0,1,0) (0,0,1)", "(1e30,0,0) (0,1,0) (0,0,1)"})
         EXPECT_NE(with(directions), "no error") << directions;
-    for (const char* spacing : {"0 1 1", "-1 1 1", "nan 1 1", "1e30 1 1"})
-        EXPECT_NE(volume_error(scratch / "a.mha", metaimage("ElementType = MET_UCHAR\nElementSpacing = " +
-                                                            std::string(spacing)) +
-                                                      bytes_of<std::uint8_t>(count_up())),
-                  "no error")
+    for (const char* spacing : {"0 1 1", "nan 1 1", "1e30 1 1"})
+        EXPECT_NE(
+            volume_error(scratch / "a.mha",
+                         metaimage(fmt::format("ElementType = MET_UCHAR\nElementSpacing = {}", spacing)) +
+                             bytes_of<std::uint8_t>(count_up())),
+            "no error")
             << spacing;
 }
 
-TEST(ReadHeaded, RefusesWhatIsNotFinite) {
+std::vector<float> count_to(int n) {
+    std::vector<float> numbers;
+    for (int i = 0; i < n; ++i) numbers.push_back(float(i));
+    return numbers;
+}
+
+class ReadNoted : public testing::Test {
+ protected:
     Scratch scratch;
-    for (float bad : {NAN, INFINITY}) {
-        std::vector<float> values = count_up();
-        values[17] = bad;
-        EXPECT_HAS(volume_error(scratch / "a.nrrd", nrrd("float", "raw") + bytes_of<float>(values)),
-                   "voxel 17");
-        EXPECT_HAS(
-            volume_error(scratch / "a.mha", metaimage("ElementType = MET_FLOAT") + bytes_of<float>(values)),
-            "voxel 17");
+    std::string notes;
+
+    Volume read(const std::string& name, const std::string& bytes) {
+        put(scratch / name, bytes);
+        std::vector<std::string> all;
+        const Volume volume = read_volume(scratch / name, {}, &all);
+        notes.clear();
+        for (const std::string& note : all) notes += note + "\n";
+        return volume;
     }
+    Volume read_nrrd(const std::string& more) {
+        return read("a.nrrd", nrrd("uchar", "raw", more) + bytes_of<std::uint8_t>(count_up()));
+    }
+    Volume read_meta(const std::string& more) {
+        return read("a.mha",
+                    metaimage("ElementType = MET_UCHAR\n" + more) + bytes_of<std::uint8_t>(count_up()));
+    }
+};
+
+const std::string space = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n";
+
+TEST_F(ReadNoted, BelievesTheUnitThatAFileNames) {
+    const std::pair<const char*, float> units[] = {{"m", 1},      {"cm", 1e-2f},      {"mm", 1e-3f},
+                                                   {"um", 1e-6f}, {"microns", 1e-6f}, {"\xc2\xb5m", 1e-6f},
+                                                   {"nm", 1e-9f}, {"inch", 0.0254f},  {"Millimeters", 1e-3f},
+                                                   {"", 1e-3f}};
+    for (const auto& [name, metres] : units) {
+        const std::string three = std::string("\"") + name + "\" \"" + name + "\" \"" + name + "\"\n";
+        const Volume placed = read_nrrd(space + "space units: " + three);
+        EXPECT_LE(glm::distance(placed.spacing / metres, vec3(2, 3, 4)), 1e-5f) << name;
+        EXPECT_LE(glm::distance(placed.origin / metres, vec3(10, 20, 30)), 1e-4f) << name;
+        EXPECT_EQ(notes, "");
+        const Volume plain = read_nrrd("spacings: 2 3 4\nunits: " + three);
+        EXPECT_LE(glm::distance(plain.spacing / metres, vec3(2, 3, 4)), 1e-5f) << name;
+    }
+    read_nrrd(space + "space units: \"furlong\" \"furlong\" \"furlong\"\n");
+    EXPECT_HAS(notes, "\"furlong\", is not known: millimetres are assumed");
+    EXPECT_HAS(
+        volume_error(scratch / "a.nrrd", nrrd("uchar", "raw", space + "space units: \"mm\" \"cm\" \"mm\"\n") +
+                                             bytes_of<std::uint8_t>(count_up())),
+        "different units");
+    for (const auto& [name, metres] : {std::pair("cm", 1e-2f), {"um", 1e-6f}, {"mm", 1e-3f}, {"?", 1e-3f}})
+        EXPECT_LE(
+            glm::distance(
+                read_meta(std::string("ElementSpacing = 2 3 4\nDistanceUnits = ") + name).spacing / metres,
+                vec3(2, 3, 4)),
+            1e-5f);
+}
+
+TEST_F(ReadNoted, SaysWhereNoSpacingIsStated) {
+    for (const char* header : {"", "spacings: nan nan nan\n"}) {
+        EXPECT_EQ(read_nrrd(header).spacing, vec3(0.001f)) << header;
+        EXPECT_HAS(notes, "states no spacing: 1 mm is assumed");
+    }
+    EXPECT_EQ(read_meta("").spacing, vec3(0.001f));
+    EXPECT_HAS(notes, "states no spacing: 1 mm is assumed");
+    EXPECT_LE(glm::distance(read_meta("ElementSize = 2 3 4").spacing, vec3(0.002f, 0.003f, 0.004f)), 1e-8f);
+    EXPECT_HAS(notes, "the size of a voxel is taken");
+    EXPECT_LE(glm::distance(read_meta("ElementSize = 9 9 9\nElementSpacing = 2 3 4").spacing,
+                            vec3(0.002f, 0.003f, 0.004f)),
+              1e-8f);
+    EXPECT_EQ(notes, "");
+}
+
+TEST_F(ReadNoted, FindsPlacesFromTheEndsOfAxes) {
+    // From the first sample's centre, or from its edge.
+    Volume v = read_nrrd("axis mins: 10 20 30\naxis maxs: 12 26 36\ncenters: node node node\n");
+    EXPECT_LE(glm::distance(v.spacing, vec3(0.002f, 0.003f, 0.002f)), 1e-8f);
+    EXPECT_LE(glm::distance(v.origin, vec3(0.010f, 0.020f, 0.030f)), 1e-8f);
+    v = read_nrrd("axismins: 10 20 30\naxismaxs: 14 29 38\ncenterings: cell cell cell\n");
+    EXPECT_LE(glm::distance(v.spacing, vec3(0.002f, 0.003f, 0.002f)), 1e-8f);
+    EXPECT_LE(glm::distance(v.origin, vec3(0.011f, 0.0215f, 0.031f)), 1e-8f);
+    v = read_nrrd("spacings: 2 -3 4\n");
+    EXPECT_EQ(v.direction[1], vec3(0, -1, 0)) << "an axis the other way";
+}
+
+TEST_F(ReadNoted, UnpacksWhateverAnNrrdIsPackedIn) {
+    const std::string raw = bytes_of<std::int16_t>(count_up()), zipped = gzip(raw),
+                      zipped_later = gzip("12345" + raw), digits = ascii();
+    auto numbers = [&](const std::string& encoding, const std::string& more, const std::string& data) {
+        return read("a.nrrd", nrrd("short", encoding, space + more) + data).values;
+    };
+    EXPECT_EQ(numbers("bzip2", "", bzip2(raw)), count_up());
+    EXPECT_EQ(numbers("bz2", "byte skip: 3\n", bzip2("xyz" + raw)), count_up());
+    EXPECT_EQ(numbers("gzip", "line skip: 2\n", "two lines\nleft out\n" + zipped), count_up());
+    EXPECT_EQ(numbers("gz", "line skip: 1\nbyte skip: 5\n", "one\n" + zipped_later), count_up());
+    EXPECT_EQ(numbers("raw", "line skip: 1\nbyte skip: 5\n", "one\n12345" + raw), count_up());
+    EXPECT_EQ(numbers("raw", "byte skip: -1\n", "whatever is before" + raw), count_up());
+    EXPECT_EQ(numbers("raw", "", raw + "whatever is behind"), count_up());
+    std::string hex;
+    for (unsigned char c : raw)
+        hex += hex.size() == 40 ? fmt::format("\n{:02x}", c) : fmt::format("{:02X}", c);
+    EXPECT_EQ(numbers("hex", "", hex), count_up());
+    EXPECT_EQ(numbers("text", "line skip: 1\n", "# a line\n" + digits), count_up());
+    EXPECT_EQ(numbers("raw", "own key:=sizes: 9 9 9\nsizes:=9 9 9\n", raw), count_up());
+    EXPECT_EQ(notes, "");
+    EXPECT_EQ(read("b.nrrd.gz", gzip(nrrd("short", "raw", space) + raw)).values, count_up())
+        << "the whole file";
+
+    auto error = [&](const std::string& encoding, const std::string& data) {
+        return volume_error(scratch / "a.nrrd", nrrd("short", encoding, space) + data);
+    };
+    EXPECT_HAS(error("bzip2", bzip2(raw).substr(0, 30)), "bzip2");
+    EXPECT_HAS(error("bzip2", raw), "said to be a bzip2 and are none");
+    EXPECT_HAS(error("gzip", raw), "said to be a gzip and are none");
+    EXPECT_HAS(error("hex", "0g"), "hexadecimal");
+    EXPECT_HAS(error("text", "1 2 three"), "\"three\" for a number");
+    EXPECT_HAS(error("text", "1 2 3"), "3 numbers of voxels where 24 are promised");
+    EXPECT_HAS(error("zrl", raw), "the encoding \"zrl\", which is not read");
+    std::string damaged = gzip(raw);
+    damaged[damaged.size() - 6] = char(damaged[damaged.size() - 6] ^ 1);  // the checksum
+    EXPECT_HAS(error("gzip", damaged), "gzip");
+}
+
+TEST_F(ReadNoted, JoinsVoxelsFromSeveralFiles) {
+    const std::vector<float> expected = count_up();
+    for (int z = 0; z < 4; ++z) {
+        const auto first = expected.begin() + 6 * z;
+        const std::string part = bytes_of<std::uint8_t>({first, first + 6});
+        put(scratch / fmt::format("z0{}", z + 1), "!" + part);
+    }
+    const std::string skip = space + "byte skip: 1\n", list = "z01\nz02\nz03\nz04\n";
+    auto header = [&](const std::string& data) {
+        std::string text = nrrd("uchar", "raw", skip + data);
+        text.pop_back();  // the empty line
+        return text;
+    };
+    EXPECT_EQ(read("a.nhdr", header("data file: LIST 2\n" + list)).values, expected);
+    EXPECT_EQ(read("a.nhdr", header("data file: z%02d 1 4 1\n")).values, expected);
+    EXPECT_EQ(read("a.nhdr", header("datafile: z%02d 1 4 1 2\n")).values, expected);
+    EXPECT_HAS(volume_error(scratch / "a.nhdr", header("data file: z%02d 1 5 1\n")),
+               "cannot share 24 voxels");
+    EXPECT_HAS(volume_error(scratch / "a.nhdr", header("data file: z%n%s 1 4 1\n")), "not understood");
+    put(scratch / "a.nhdr", header("data file: z%02d 3 6 1\n"));
+    EXPECT_HAS(error_of(scratch / "z05", [&] { read_volume(scratch / "a.nhdr"); }), "cannot open");
+    const std::string meta = "ElementType = MET_UCHAR\nElementSpacing = 1 1 1\nHeaderSize = 1";
+    EXPECT_EQ(read("a.mhd", metaimage(meta, "LIST\n" + list)).values, expected);
+    EXPECT_EQ(read("a.mhd", metaimage(meta, "z%02d 1 4 1")).values, expected);
+    const std::string all = bytes_of<std::uint8_t>(expected);
+    put(scratch / "end.raw", "whatever is before" + all);
+    EXPECT_EQ(read("a.mhd", metaimage(changed(meta, "HeaderSize = 1", "HeaderSize = -1"), "end.raw")).values,
+              expected);
+    put(scratch / "packed.raw", gzip(bytes_of<std::uint8_t>(count_up())));
+    EXPECT_EQ(
+        read("a.mhd", metaimage("ElementType = MET_UCHAR\nElementSpacing = 1 1 1", "packed.raw")).values,
+        expected)
+        << "though it does not say that it is packed";
+}
+
+TEST_F(ReadNoted, TakesTheFirstOfSeveralVolumes) {
+    const std::string data = bytes_of<std::uint8_t>(count_to(72));
+    auto four = [&](const std::string& sizes, const std::string& more) {
+        return read("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: " + sizes + "\nencoding: raw\n" +
+                                  more + "\n" + data);
+    };
+    const std::string last = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4) none\n",
+                      first = "space: LPS\nspace directions: none (2,0,0) (0,3,0) (0,0,4)\n";
+    std::vector<float> every_third;
+    for (int i = 0; i < 24; ++i) every_third.push_back(float(3 * i));
+    Volume v = four("2 3 4 3", last + "kinds: domain domain domain list\n");
+    EXPECT_EQ(v.values, count_up());
+    EXPECT_HAS(notes, "3 volumes in one file: the first is taken");
+    EXPECT_EQ(four("2 3 4 3", "spacings: 2 3 4 nan\nkinds: domain domain domain time\n").values, count_up());
+    v = four("3 2 3 4", first + "kinds: list domain domain domain\n");
+    EXPECT_EQ(v.dims, ivec3(2, 3, 4));
+    EXPECT_EQ(v.values, every_third);
+    EXPECT_LE(glm::distance(v.spacing, vec3(0.002f, 0.003f, 0.004f)), 1e-8f);
+    EXPECT_EQ(four("1 2 3 4", first).values, count_up());
+    EXPECT_EQ(notes, "");
+    EXPECT_EQ(four("2 3 4 1", "spacings: 2 3 4 1\n").values, count_up());
+    for (const char* kind : {"vector", "RGB-color", "3-vector"})
+        EXPECT_HAS(volume_error(scratch / "a.nrrd",
+                                "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 2 3 4\nencoding: raw\n" +
+                                    first + "kinds: " + kind + " domain domain domain\n\n" + data),
+                   "3 numbers a voxel");
+    EXPECT_HAS(volume_error(scratch / "a.nrrd",
+                            "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 3 4 3\nencoding: raw\n\n" + data),
+               "4 dimensions instead of three");
+
+    v = read("a.mha",
+             "NDims = 4\nDimSize = 2 3 4 3\nElementType = MET_UCHAR\nElementSpacing = 2 3 4 1\nOffset = 10 "
+             "20 30 0\n"
+             "TransformMatrix = 0 1 0 0 -1 0 0 0 0 0 1 0 0 0 0 1\nElementDataFile = LOCAL\n" +
+                 data);
+    EXPECT_EQ(v.values, count_up());
+    EXPECT_HAS(notes, "3 volumes in one file: the first is taken");
+    EXPECT_EQ(v.direction[0], vec3(0, 1, 0));
+    EXPECT_EQ(v.direction[1], vec3(-1, 0, 0));
+    EXPECT_LE(glm::distance(v.origin, vec3(0.01f, 0.02f, 0.03f)), 1e-8f);
+}
+
+TEST_F(ReadNoted, TakesEveryNameOfAKindOfNumber) {
+    for (const char* type : {"short", "short int", "signed short", "signed short int", "int16", "int16_t"})
+        EXPECT_EQ(read("a.nrrd", nrrd(type, "raw") + bytes_of<std::int16_t>(count_up())).values, count_up())
+            << type;
+    for (const char* type : {"unsigned long long int", "ulonglong", "uint64_t", "unsigned long long"})
+        EXPECT_EQ(read("a.nrrd", nrrd(type, "raw") + bytes_of<std::uint64_t>(count_up())).values, count_up())
+            << type;
+    for (const char* type : {"int", "signed int", "int32"})
+        EXPECT_EQ(read("a.nrrd", nrrd(type, "raw") + bytes_of<std::int32_t>(count_up())).values, count_up())
+            << type;
+    EXPECT_EQ(read("a.nrrd", nrrd("unsigned int", "raw") + bytes_of<std::uint32_t>(count_up())).values,
+              count_up());
+    EXPECT_EQ(read("a.mha", metaimage("ElementType = MET_LONG") + bytes_of<std::int32_t>(count_up())).values,
+              count_up());
+    EXPECT_EQ(
+        read("a.mha", metaimage("ElementType = MET_ULONG_LONG") + bytes_of<std::uint64_t>(count_up())).values,
+        count_up());
+    read("a.nrrd",
+         changed(nrrd("short", "raw"), "endian: little\n", "") + bytes_of<std::int16_t>(count_up()));
+    EXPECT_HAS(notes, "order of bytes: little-endian is assumed");
+    read_nrrd("spacings: 1 1 1\n");
+    EXPECT_HAS(notes, "does not say what is left, back and up");
+    const Volume scaled =
+        read_meta("ElementToIntensityFunctionSlope = 2\nElementToIntensityFunctionOffset = -3");
+    EXPECT_EQ(scaled.values[5], 7);
 }
 
 }  // namespace

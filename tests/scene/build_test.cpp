@@ -254,6 +254,9 @@ TEST(Build, LabelsTurnAndMoveWithTheBody) {
                 EXPECT_TRUE(at == 2 || at == 3) << at;
             }
     }
+    values[0] = std::nanf("");
+    write_labels(scratch / "labels.nii", values);
+    EXPECT_TRUE(has_note(make(cube + region, scratch / "."), "cube, region 1, labels: 1 voxels"));
     EXPECT_TRUE(has_note(
         make(cube + "[[body.region]]\nlabels = \"labels.nii\"\nlabel = 9\nfactor = 2\n", scratch / "."),
         "label holds no node"));

@@ -1,7 +1,7 @@
-#include "palpate/mesh/formats/volumes.h"
+#include "palpate/mesh/formats/source.h"
+#include "palpate/mesh/formats/voxels.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -9,171 +9,320 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <memory>
-#include <string_view>
+#include <istream>
 #include <utility>
-#include <vector>
+
+// NIfTI-1, NIfTI-2 and Analyze 7.5. A file may state where its voxels lie in three ways (a matrix, the sform;
+// a quaternion, the qform; spacings alone). The first of them counts that it states, as for nibabel, FSL and
+// SPM, so that a label and its image lie on each other, whichever program wrote them.
 
 namespace palpate {
 namespace {
 
-// The 348 bytes that every NIfTI-1 file begins with; its numbers may be in either byte order.
-struct Header {
-    static constexpr std::size_t size = 348;
-    std::array<char, size> bytes{};
+enum class Form { one_file, pair, analyze };
 
-    template <class T>
-    T load(const char* from) const {
-        char raw[sizeof(T)];
-        std::memcpy(raw, from, sizeof raw);
-        if (swapped()) std::reverse(raw, raw + sizeof raw);
-        return std::bit_cast<T>(raw);
-    }
-    template <class T>
-    T at(std::size_t offset) const {
-        return load<T>(&bytes[offset]);
-    }
-    // It begins with its own size, or with that of NIfTI-2.
-    int begins_with() const { return at<std::int32_t>(0); }
-    bool swapped() const {
-        std::int32_t raw;
-        std::memcpy(&raw, bytes.data(), sizeof raw);
-        return raw != 348 && raw != 540;
-    }
-    int dim(int i) const { return at<std::int16_t>(40 + 2 * i); }
-    int datatype() const { return at<std::int16_t>(70); }
-    float spacing(int i) const { return at<float>(76 + 4 * i); }
-    float data_offset() const { return std::max(at<float>(108), float(size)); }
-    // How many millimetres its unit of length is.
-    double millimetres() const {
-        const int unit = bytes[123] & 7;
-        return unit == 1 ? 1000 : unit == 3 ? 0.001 : 1;
-    }
-    double voxels() const { return double(dim(1)) * dim(2) * dim(3); }
-    bool has_quaternion() const { return at<std::int16_t>(252) > 0; }
-    bool has_matrix() const { return at<std::int16_t>(254) > 0; }
-    std::string_view magic() const { return {&bytes[344], 3}; }
+// What all three kinds of header say.
+struct Header {
+    Form form = Form::one_file;
+    bool big_endian = false;
+    std::array<double, 8> dim{}, pixdim{};
+    int datatype = 0, qform = 0, sform = 0, units = 0;
+    double size = 0, offset = 0;  // bytes
+    double slope = 1, intercept = 0;
+    dvec3 quaternion = dvec3(0), origin = dvec3(0);
+    std::array<double, 12> matrix{};  // row by row
 };
 
-// Bytes of a voxel of the NIfTI data types that are one real number (integers of 8 to 64 bits with and
-// without a sign, float and double); 0 for all others.
-std::size_t voxel_bytes(int datatype) {
-    constexpr std::pair<int, std::size_t> kinds[] = {{2, 1},   {256, 1}, {4, 2},    {512, 2},  {8, 4},
-                                                     {768, 4}, {16, 4},  {1024, 8}, {1280, 8}, {64, 8}};
-    for (auto [kind, bytes] : kinds)
-        if (kind == datatype) return bytes;
-    return 0;
-}
-
-// False for what no scanner writes. Where a matrix is not finite, ITK ends the whole program; where it is
-// subnormal, it complains aloud.
-bool sensible(float value) { return std::abs(value) < 1e9f && std::fpclassify(value) != FP_SUBNORMAL; }
-
-void check_format(const Header& header, const std::filesystem::path& path) {
-    if (header.begins_with() == 540) refuse("NIfTI-2", path, "convert it to NIfTI-1");
-    if (header.begins_with() != int(Header::size)) refuse("no NIfTI-1 header", path);
-    if (header.magic() == "ni1")
-        refuse("a NIfTI header apart from its data", path, "join them to one .nii file");
-    if (header.magic() != "n+1") refuse("no NIfTI-1 header", path);
-}
-
-void check_dimensions(const Header& header, const std::filesystem::path& path) {
-    const int dims = header.dim(0);
-    if (dims < 3 || dims > 7)
-        refuse(fmt::format("{} dimensions instead of three", dims), path, "give a volume");
-    check_sizes({double(header.dim(1)), double(header.dim(2)), double(header.dim(3))}, path);
-    if (dims >= 4 && header.dim(4) > 1)
-        refuse(fmt::format("{} time points", header.dim(4)), path, "split it and give one of them");
-    for (int i = 5; i <= dims; ++i)
-        if (header.dim(i) > 1) refuse("several values a voxel", path, "split it and give one of them");
-}
-
-void check_geometry(const Header& header, const std::filesystem::path& path) {
-    for (int i = 1; i <= 3; ++i)
-        if (!(header.spacing(i) > 1e-9f && sensible(header.spacing(i))))
-            refuse(fmt::format("voxels {} wide", header.spacing(i)), path);
-    const std::size_t from = header.has_quaternion() ? 256 : 280, to = header.has_matrix() ? 328 : 280;
-    for (std::size_t offset = from; offset < to; offset += 4)
-        if (!sensible(header.at<float>(offset))) refuse("an orientation that is not finite", path);
-}
-
-void check_data(const Header& header, const std::filesystem::path& path) {
-    if (!sensible(header.data_offset())) refuse("voxels that begin nowhere", path);
-    if (voxel_bytes(header.datatype()) == 0)
-        refuse(fmt::format("voxels of NIfTI's type {}, which are not real numbers", header.datatype()), path,
-               "convert them to numbers");
-}
-
-// A gzip file as it comes out, or a plain file as it is.
-class Stream {
+// The bytes of a header, whose numbers may be in either order.
+class Bytes {
  public:
-    explicit Stream(const std::filesystem::path& path) : path_(path) {
-        file_.reset(gzopen(path.c_str(), "rb"));
-        if (!file_) refuse("cannot open", path, "check the name and that it may be read");
+    Bytes(const char* bytes, bool swapped) : bytes_(bytes), swapped_(swapped) {}
+    template <class T>
+    double at(std::size_t offset) const {
+        char raw[sizeof(T)];
+        std::memcpy(raw, bytes_ + offset, sizeof raw);
+        if (swapped_) std::reverse(raw, raw + sizeof raw);
+        return double(std::bit_cast<T>(raw));
     }
-    // How many bytes could be read: less than `most` only at the end of the file.
-    std::size_t read(char* to, std::size_t most) {
-        const int count = gzread(file_.get(), to, unsigned(most));
-        int error;
-        gzerror(file_.get(), &error);
-        if (count < 0 || error != Z_OK) refuse("a truncated or damaged gzip", path_, "get the file again");
-        return std::size_t(count);
+    template <class T, std::size_t N>
+    void at(std::size_t offset, std::array<double, N>& numbers) const {
+        for (std::size_t i = 0; i < N; ++i) numbers[i] = at<T>(offset + i * sizeof(T));
+    }
+    template <class T>
+    dvec3 three(std::size_t offset) const {
+        return {at<T>(offset), at<T>(offset + sizeof(T)), at<T>(offset + 2 * sizeof(T))};
     }
 
  private:
-    struct Close {
-        void operator()(gzFile file) const { gzclose(file); }
-    };
-    const std::filesystem::path& path_;
-    std::unique_ptr<gzFile_s, Close> file_;
+    const char* bytes_;
+    bool swapped_;
 };
 
-Header read_header(Stream& stream, const std::filesystem::path& path) {
-    Header header;
-    if (stream.read(header.bytes.data(), Header::size) < Header::size) refuse("no NIfTI-1 header", path);
-    check_format(header, path);
-    check_dimensions(header, path);
-    check_geometry(header, path);
-    check_data(header, path);
+constexpr std::size_t size_1 = 348, size_2 = 540;
+
+bool is_big(bool swapped) { return (std::endian::native == std::endian::big) != swapped; }
+
+Header header_1(const char* raw, bool swapped, Form form) {
+    const Bytes bytes(raw, swapped);
+    Header header{.form = form, .big_endian = is_big(swapped), .size = size_1};
+    bytes.at<std::int16_t>(40, header.dim);
+    bytes.at<float>(76, header.pixdim);
+    header.datatype = int(bytes.at<std::int16_t>(70));
+    header.offset = bytes.at<float>(108);
+    header.slope = bytes.at<float>(112);  // in Analyze files SPM has its scale there
+    if (form == Form::analyze) return header;
+    header.intercept = bytes.at<float>(116);
+    header.units = raw[123];
+    header.qform = int(bytes.at<std::int16_t>(252));
+    header.sform = int(bytes.at<std::int16_t>(254));
+    header.quaternion = bytes.three<float>(256);
+    header.origin = bytes.three<float>(268);
+    bytes.at<float>(280, header.matrix);
     return header;
 }
 
-// In the file's own byte order and kind; ITK would turn what is not finite into zeros.
-template <class T>
-void check_finite(const Header& header, const std::vector<char>& block, std::size_t bytes,
-                  std::uint64_t first, const std::filesystem::path& path) {
-    for (std::size_t i = 0; i + sizeof(T) <= bytes; i += sizeof(T))
-        if (!std::isfinite(header.load<T>(&block[i])))
-            refuse(fmt::format("voxel {} is not finite", (first + i) / sizeof(T)), path);
+Header header_2(const char* raw, bool swapped, Form form) {
+    const Bytes bytes(raw, swapped);
+    Header header{.form = form, .big_endian = is_big(swapped), .size = size_2};
+    bytes.at<std::int64_t>(16, header.dim);
+    bytes.at<double>(104, header.pixdim);
+    header.datatype = int(bytes.at<std::int16_t>(12));
+    header.offset = bytes.at<std::int64_t>(168);
+    header.slope = bytes.at<double>(176);
+    header.intercept = bytes.at<double>(184);
+    header.qform = int(bytes.at<std::int32_t>(344));
+    header.sform = int(bytes.at<std::int32_t>(348));
+    header.quaternion = bytes.three<double>(352);
+    header.origin = bytes.three<double>(376);
+    bytes.at<double>(400, header.matrix);
+    header.units = int(bytes.at<std::int32_t>(500));
+    return header;
 }
 
-// Reads the voxels once, in small blocks, and on to the end of the file, where a gzip has its checksum.
-void check_voxels(Stream& stream, const Header& header, const std::filesystem::path& path) {
-    const double offset = header.data_offset();
-    const double promised = header.voxels() * double(voxel_bytes(header.datatype()));
-    std::vector<char> block(1 << 16);
-    for (double gap = offset - double(Header::size); gap > 0;) {
-        const auto count = stream.read(block.data(), std::size_t(std::min(gap, double(block.size()))));
-        if (count == 0) break;
-        gap -= double(count);
+Header read_header(std::istream& in, const std::filesystem::path& path) {
+    std::array<char, size_2> raw{};
+    if (!in.read(raw.data(), size_1)) refuse_start("NIfTI", path);
+    std::int32_t size;
+    std::memcpy(&size, raw.data(), sizeof size);
+    const std::int32_t turned = std::int32_t(__builtin_bswap32(std::uint32_t(size)));
+    const bool swapped = turned == int(size_1) || turned == int(size_2);
+    if (swapped) size = turned;
+
+    const bool two = size == int(size_2);
+    if (!two && size != int(size_1)) refuse_start("NIfTI", path);
+    if (two && !in.read(raw.data() + size_1, size_2 - size_1)) refuse_start("NIfTI", path);
+    const std::string magic(raw.data() + (two ? 4 : 344), 3);
+    const char version = two ? '2' : '1';
+    if (magic[0] == 'n' && magic[2] == version && (magic[1] == '+' || magic[1] == 'i')) {
+        const Form form = magic[1] == '+' ? Form::one_file : Form::pair;
+        return two ? header_2(raw.data(), swapped, form) : header_1(raw.data(), swapped, form);
     }
-    std::uint64_t total = 0;
-    while (const std::size_t count = stream.read(block.data(), block.size())) {
-        const auto voxels = std::size_t(std::min(double(count), std::max(promised - double(total), 0.0)));
-        if (header.datatype() == 16) check_finite<float>(header, block, voxels, total, path);
-        if (header.datatype() == 64) check_finite<double>(header, block, voxels, total, path);
-        total += count;
+    if (two || lower_name(path).ends_with(".nii")) refuse_start("NIfTI", path);
+    return header_1(raw.data(), swapped, Form::analyze);
+}
+
+// ---- where the voxels lie ----
+
+// NIfTI's axes run right, forward and up; ours left, back and up.
+const dmat3 to_ours(dvec3(-1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, 1));
+
+// One of the ways in which a file states a place: what it is called, and what comes of it.
+struct Stated {
+    std::string name;
+    std::optional<Grid> grid;
+};
+
+Stated by_matrix(const Header& header, ivec3 dims) {
+    const auto& m = header.matrix;
+    const dmat3 steps(dvec3(m[0], m[4], m[8]), dvec3(m[1], m[5], m[9]), dvec3(m[2], m[6], m[10]));
+    return {fmt::format("sform (code {})", header.sform),
+            grid_of(dims, to_ours * steps, to_ours * dvec3(m[3], m[7], m[11]))};
+}
+
+Stated by_quaternion(const Header& header, ivec3 dims, dvec3 spacing) {
+    const dvec3 q = header.quaternion / std::max(1.0, glm::length(header.quaternion));
+    const double a = std::sqrt(std::max(0.0, 1 - glm::dot(q, q))), b = q.x, c = q.y, d = q.z;
+    const dmat3 turn(dvec3(a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)),
+                     dvec3(2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)),
+                     dvec3(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c));
+    const double mirror = header.pixdim[0] < 0 ? -1 : 1;
+    const dmat3 steps(turn[0] * spacing.x, turn[1] * spacing.y, turn[2] * spacing.z * mirror);
+    return {fmt::format("qform (code {})", header.qform),
+            grid_of(dims, to_ours * steps, to_ours * header.origin)};
+}
+
+// Where nothing is said of it: around the origin, and to the left, as for nibabel.
+Stated by_spacing(ivec3 dims, dvec3 spacing) {
+    const dmat3 steps(dvec3(spacing.x, 0, 0), dvec3(0, -spacing.y, 0), dvec3(0, 0, spacing.z));
+    return {"spacing alone", grid_of(dims, steps, -(steps * (dvec3(dims - 1) * 0.5)))};
+}
+
+// In metres; 0 where none is stated.
+double unit_of(const Header& header) {
+    const int code = header.units & 7;
+    return code == 1 ? 1 : code == 2 ? 1e-3 : code == 3 ? 1e-6 : 0;
+}
+
+// The farthest that a corner lies apart in two grids.
+double apart(const Grid& a, const Grid& b) {
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const dvec3 voxel = dvec3(a.dims - 1) * dvec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+        farthest = std::max(farthest, glm::distance(a.place(voxel), b.place(voxel)));
     }
-    if (!(promised <= double(total))) refuse_truncated(double(total), promised, path);
+    return farthest;
+}
+
+// Widths of voxels as a quaternion and the spacing alone need them.
+dvec3 spacing_of(const Header& header, std::vector<std::string>& notes, const std::filesystem::path& path) {
+    dvec3 spacing(header.pixdim[1], header.pixdim[2], header.pixdim[3]);
+    for (int i = 0; i < 3; ++i) {
+        if (!std::isfinite(spacing[i])) refuse(fmt::format("voxels {} wide", spacing[i]), path);
+        if (spacing[i] == 0) {
+            notes.push_back(fmt::format("it states no spacing along {}: 1 is assumed", "xyz"[i]));
+            spacing[i] = 1;
+        } else if (spacing[i] < 0) {
+            notes.push_back(
+                fmt::format("its spacing along {} is {}: taken without the sign", "xyz"[i], spacing[i]));
+            spacing[i] = -spacing[i];
+        }
+    }
+    return spacing;
+}
+
+Grid place_of(const Header& header, ivec3 dims, std::vector<std::string>& notes,
+              const std::filesystem::path& path) {
+    std::vector<Stated> all;
+    if (header.sform > 0) all.push_back(by_matrix(header, dims));
+    std::vector<std::string> of_spacing;
+    if (header.qform > 0) all.push_back(by_quaternion(header, dims, spacing_of(header, of_spacing, path)));
+    if (all.empty()) {
+        all.push_back(by_spacing(dims, spacing_of(header, of_spacing, path)));
+        notes.push_back(
+            header.form == Form::analyze
+                ? "an Analyze file does not say how it lies: x is taken as left, y as forward, z "
+                  "as up, and left and right may be swapped"
+                : "it does not say how it lies (qform and sform code 0): x is taken as left, y as "
+                  "forward, z as up");
+    }
+    const auto usable =
+        std::find_if(all.begin(), all.end(), [](const Stated& s) { return s.grid.has_value(); });
+    if (usable == all.end())
+        refuse(
+            "a " + all[0].name + " that is not finite, has no width, or whose axes are not at right angles",
+            path, "resample it to axes at right angles");
+    if (usable != all.begin())
+        notes.push_back(
+            fmt::format("its {} is not finite, has no width, or is not at right angles: the {} is taken",
+                        all[0].name, usable->name));
+    else if (all.size() == 2 && all[1].grid) {
+        const dvec3 voxel = all[0].grid->spacing;
+        const double distance = apart(*all[0].grid, *all[1].grid);
+        if (distance > 0.1 * std::min({voxel.x, voxel.y, voxel.z}))
+            notes.push_back(fmt::format(
+                "it states two places, up to {:.3g} mm apart: the {} is taken, not the {}",
+                distance * 1000 * (unit_of(header) > 0 ? unit_of(header) : 1e-3), all[0].name, all[1].name));
+    }
+    if (!usable->name.starts_with("sform")) notes.insert(notes.end(), of_spacing.begin(), of_spacing.end());
+    return *usable->grid;
+}
+
+// ---- the voxels ----
+
+std::optional<Number> number_of(int datatype) {
+    constexpr std::pair<int, Number> kinds[] = {
+        {2, Number::uint8},    {256, Number::int8},   {4, Number::int16},    {512, Number::uint16},
+        {8, Number::int32},    {768, Number::uint32}, {16, Number::float32}, {1024, Number::int64},
+        {64, Number::float64}, {1280, Number::uint64}};
+    for (auto [kind, number] : kinds)
+        if (kind == datatype) return number;
+    return std::nullopt;
+}
+
+[[noreturn]] void refuse_type(int datatype, const std::filesystem::path& path) {
+    const bool colours = datatype == 128 || datatype == 2304, complex = datatype == 32 || datatype >= 1792;
+    refuse(colours   ? "colours (RGB)"
+           : complex ? "complex numbers"
+                     : fmt::format("voxels of type {}, which is not read,", datatype),
+           path, "convert it to one real number a voxel");
+}
+
+ivec3 sizes_of(const Header& header, std::vector<std::string>& notes, const std::filesystem::path& path) {
+    const double count = header.dim[0];
+    if (!(count >= 3 && count <= 7))
+        refuse(fmt::format("{} dimensions instead of three", count), path, "give a volume");
+    const ivec3 dims = checked_sizes({header.dim[1], header.dim[2], header.dim[3]}, path);
+    for (std::size_t i = 5; i <= std::size_t(count); ++i)
+        if (header.dim[i] > 1)
+            refuse(fmt::format("{} numbers a voxel", header.dim[i]), path, "split it and give one of them");
+    if (count >= 4 && header.dim[4] > 1)
+        notes.push_back(fmt::format("{} time points: the first is taken", header.dim[4]));
+    return dims;
+}
+
+Layout layout_of(const Header& header, std::size_t voxels, std::vector<std::string>& notes,
+                 const std::filesystem::path& path) {
+    const auto number = number_of(header.datatype);
+    if (!number) refuse_type(header.datatype, path);
+    Layout layout{.number = *number, .big_endian = header.big_endian, .voxels = voxels};
+    if (!(header.offset >= 0 && header.offset < 1e15)) refuse("voxels that begin nowhere", path);
+    layout.skipped_bytes = std::int64_t(header.offset);
+    // A slope of 0 means none.
+    if (std::isfinite(header.slope) && header.slope != 0) {
+        layout.slope = header.slope;
+        if (std::isfinite(header.intercept)) layout.intercept = header.intercept;
+        if (header.form == Form::analyze && header.slope != 1)
+            notes.push_back(fmt::format("its values are scaled by {}, as SPM's are", header.slope));
+    }
+    return layout;
+}
+
+// The other file of a pair: the same name with another ending, with .gz behind it or not.
+std::filesystem::path partner(const std::filesystem::path& path, std::string ending) {
+    std::filesystem::path stem = path;
+    if (lower_name(stem).ends_with(".gz")) stem.replace_extension();
+    for (const bool large : {false, true}) {
+        if (large)
+            for (char& c : ending) c = char(std::toupper(static_cast<unsigned char>(c)));
+        for (const char* packed : {"", ".gz"}) {
+            std::filesystem::path other = stem.replace_extension(ending);
+            other += packed;
+            if (std::filesystem::exists(other)) return other;
+        }
+    }
+    return {};
 }
 
 }  // namespace
 
-Found look_through_nifti(const std::filesystem::path& path) {
-    Stream stream(path);
-    const Header header = read_header(stream, path);
-    check_voxels(stream, header, path);
-    return {.bytes = sizeof(double) * header.voxels(), .origin_scale = header.millimetres()};
+Reading read_nifti(const std::filesystem::path& path) {
+    const std::string name = lower_name(path);
+    const bool image = name.ends_with(".img") || name.ends_with(".img.gz");
+    const std::filesystem::path headed = image ? partner(path, ".hdr") : path;
+    if (headed.empty()) refuse("no header (.hdr) beside it for the voxels", path, "put it there");
+    const auto in = open_file(headed);
+    Header header;
+    try {
+        header = read_header(*in, headed);
+    } catch (const std::ios_base::failure&) {
+        refuse("a truncated or damaged gzip", headed, "get the file again");
+    }
+
+    Reading reading;
+    reading.grid.dims = sizes_of(header, reading.notes, headed);
+    reading.grid = place_of(header, reading.grid.dims, reading.notes, headed);
+    reading.unit = unit_of(header);
+
+    Layout layout = layout_of(header, reading.grid.count(), reading.notes, headed);
+    if (header.form == Form::one_file) {
+        layout.skipped_bytes = std::max<std::int64_t>(layout.skipped_bytes - std::int64_t(header.size), 0);
+        reading.values = read_voxels(*in, layout, headed);
+    } else {
+        const std::filesystem::path data = image ? path : partner(path, ".img");
+        if (data.empty()) refuse("no voxels (.img) beside it for the header", path, "put them there");
+        reading.values = read_voxels(*open_file(data), layout, data);
+    }
+    return reading;
 }
 
 }  // namespace palpate

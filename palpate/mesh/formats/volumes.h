@@ -1,16 +1,16 @@
 #pragma once
 #include "palpate/base/vectors.h"
-#include "palpate/mesh/volume.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace palpate {
 
-// What stands between a volume's files and ITK, which believes what they claim: each is looked through first,
-// and ITK works in a process of its own.
+// One reader a format, each for what a stranger's file may hold. They allocate for what is there, never for
+// what a file claims.
 
 /// 1024³: four gigabytes of values.
 constexpr double most_voxels = 1 << 30;
@@ -18,58 +18,60 @@ constexpr double most_voxels = 1 << 30;
 [[noreturn]] void refuse(std::string_view what, const std::filesystem::path& path,
                          std::string_view remedy = "export it again");
 
+/// A file's name, without its folders, in small letters.
+std::string lower_name(const std::filesystem::path& path);
+std::string small_letters(std::string text);
+
 /// Throws Error unless these are the sizes of a volume of three dimensions and at most 2^30 voxels.
-void check_sizes(const std::vector<double>& sizes, const std::filesystem::path& path);
+ivec3 checked_sizes(const std::vector<double>& sizes, const std::filesystem::path& path);
 
-/// Throws Error that a file holds less than it promises.
-[[noreturn]] void refuse_truncated(double there, double promised, const std::filesystem::path& path);
+/// Throws Error that a file holds less than it promises. `what`: "bytes", "numbers".
+[[noreturn]] void refuse_truncated(double there, double promised, std::string_view what,
+                                   const std::filesystem::path& path);
 
-/// Where the voxels lie, in millimetres and ITK's axes.
+/// Where voxels lie, in the file's own unit of length. The world's axes are DICOM's: x to the left, y to the
+/// back, z up.
 struct Grid {
     ivec3 dims = ivec3(0);
     dvec3 spacing = dvec3(1), origin = dvec3(0);
     dmat3 direction = dmat3(1);
+
+    dvec3 place(dvec3 voxel) const { return origin + direction * (spacing * voxel); }
+    std::size_t count() const { return std::size_t(dims.x) * std::size_t(dims.y) * std::size_t(dims.z); }
 };
 
-/// What a look through a file has found: how many bytes its voxels may take in ITK's hands, and what ITK gets
-/// wrong about where they lie.
-struct Found {
-    double bytes = 0;
-    double origin_scale = 1;  // of NIfTI: ITK applies the file's unit of length to the spacing only
-    dvec3 turn = dvec3(1);    // of NRRD's space LAS: ITK turns the wrong axis
-};
+/// The grid whose voxel v lies at origin + steps · v. Nothing if a step has no length, or they are not at
+/// right angles (within 1e-3), or a number is beyond what any scanner writes.
+std::optional<Grid> grid_of(ivec3 dims, const dmat3& steps, dvec3 origin);
 
-// Each throws Error if the file is missing, damaged or truncated, or promises more than it holds. They read
-// the file in small blocks.
-Found look_through_nifti(const std::filesystem::path& path);
-Found look_through_nrrd(const std::filesystem::path& path);
-Found look_through_metaimage(const std::filesystem::path& path);
+/// The same; throws Error that says which it is.
+Grid checked_grid(ivec3 dims, const dmat3& steps, dvec3 origin, const std::filesystem::path& path);
 
-/// Reads what has been looked through.
-Volume read_with_itk(const std::filesystem::path& path, const Found& found);
+/// How many metres a unit of length is that a file names in small letters ("mm", "micron"). 0 if it names
+/// none; 0 and a note if it is unknown.
+double named_unit(const std::string& name, std::vector<std::string>& notes);
 
-/// One file of a DICOM series.
-struct Slice {
-    std::filesystem::path file;
-    std::string series, description;
+/// The note on a file that states no spacing, where 1 is taken.
+constexpr const char* no_spacing =
+    "it states no spacing: 1 mm is assumed, or 1 of the unit that is said for the file";
+
+/// What a file says, as it says it.
+struct Reading {
     Grid grid;
+    std::vector<float> values;       // x runs fastest
+    double unit = 0;                 // metres; 0 where the file states none
+    std::vector<std::string> notes;  // what was assumed, left out or changed
 };
 
-/// True of a file that bears DICOM's mark, and of a folder with such a file in it.
+/// NIfTI-1 and NIfTI-2 in one file or as a pair .hdr and .img, and Analyze 7.5.
+Reading read_nifti(const std::filesystem::path& path);
+Reading read_nrrd(const std::filesystem::path& path);
+Reading read_metaimage(const std::filesystem::path& path);
+
+/// A DICOM series; `path` is the folder that it lies in, or one above, or one of its files.
+Reading read_dicom(const std::filesystem::path& path);
+
+/// True of a file that bears DICOM's mark, or begins as a data set does without it.
 bool is_dicom(const std::filesystem::path& path);
-
-/// The files with DICOM's mark in a folder, by name.
-std::vector<std::filesystem::path> dicom_files(const std::filesystem::path& folder);
-
-/// The series that `path`, a file, belongs to; or if it is the folder, the only one of more than one slice.
-/// Throws Error, with a list of the series, if there are several.
-std::vector<Slice> one_series(const std::vector<Slice>& slices, const std::filesystem::path& path);
-
-/// Sorts slices from the lowest to the highest and returns the grid that they make up together. Throws Error
-/// unless they are alike, evenly spaced and straight above each other.
-Grid stack(std::vector<Slice>& slices, const std::filesystem::path& path);
-
-/// Reads a series of slices; `path` is a folder, or a file of the series in it.
-Volume read_dicom(const std::filesystem::path& path);
 
 }  // namespace palpate
