@@ -84,7 +84,7 @@ void add_import(CLI::App& app) {
     command->add_option("--faces", recipe.faces, "simplify to about so many faces")
         ->check(CLI::NonNegativeNumber);
     command->add_option("--units", arguments->units,
-                        "of the file: m, cm, mm, um [as a volume states, or mm; m for a mesh]");
+                        "of the file: m, cm, mm, um [what it states; else mm for a volume, m for a mesh]");
     command->add_option("--size", recipe.size, "m: instead, scale it so that its longest side is this")
         ->check(CLI::PositiveNumber);
     command

@@ -131,7 +131,7 @@ Json look_at(const std::string& name, const std::string& units) {
         about["notes"] = notes;
         return about;
     }
-    Mesh mesh = read_mesh(name, unit.value_or(Units::metres), &notes);
+    Mesh mesh = read_mesh(name, unit, &notes);
     // Many files write a vertex once for each of its faces. What is closed as it stands may have two in one
     // place, which hold apart what would else touch.
     if (!soundness(mesh).closed()) weld(mesh);
@@ -187,7 +187,7 @@ void add_info(CLI::App& app) {
     command->add_option("file", arguments->file, "a mesh, a volume, a scene, or a shipped scene's name")
         ->required();
     command->add_option("--units", arguments->units,
-                        "of the file: m, cm, mm, um [as a volume states, or mm; m for a mesh]");
+                        "of the file: m, cm, mm, um [what it states; else mm for a volume, m for a mesh]");
     command->add_flag("--json", arguments->json, "as JSON");
     command->callback([arguments] {
         const Json about = look_at(arguments->file, arguments->units);

@@ -16,7 +16,10 @@ pkg_check_modules(hwy REQUIRED IMPORTED_TARGET GLOBAL libhwy)
 # mesh
 list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)  # where Debian puts it
 palpate_needs(ZLIB)
+palpate_needs(EXPAT)
+pkg_check_modules(libzip REQUIRED IMPORTED_TARGET GLOBAL libzip)  # its own CMake file wants its programs too
 palpate_needs(assimp)
+pkg_check_modules(draco REQUIRED IMPORTED_TARGET GLOBAL draco)
 palpate_needs(meshoptimizer)
 palpate_needs(Boost COMPONENTS iostreams)
 palpate_needs(GDCM)

@@ -7,6 +7,7 @@ build_packages=(
     libgdcm-dev                                                               # DICOM
     libopenvdb-dev libboost-iostreams-dev libtbb-dev                          # solids, archives
     libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures
+    libexpat1-dev libzip-dev libdraco-dev                                     # surfaces that are XML, or packed
     libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver
     libglfw3-dev libimgui-dev fonts-dejavu-core                               # the viewer
     libtomlplusplus-dev libcli11-dev nlohmann-json3-dev                       # scenes, command line, reports

@@ -72,13 +72,12 @@ Json animation(const GltfContents& contents, Lists& lists) {
 }
 
 std::string base64(const std::string& bytes) {
-    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     text.reserve(bytes.size() / 3 * 4 + 4);
     auto byte = [&](std::size_t i) { return i < bytes.size() ? std::uint32_t(std::uint8_t(bytes[i])) : 0u; };
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         const std::uint32_t word = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-        for (int shift : {18, 12, 6, 0}) text += digits[word >> shift & 63];
+        for (int shift : {18, 12, 6, 0}) text += base64_digits[word >> shift & 63];
     }
     for (std::size_t left = bytes.size() % 3, i = 0; left && i < 3 - left; ++i)
         text[text.size() - 1 - i] = '=';

@@ -10,15 +10,18 @@
 
 namespace palpate {
 
-/// Reads a surface whose coordinates are in `units`. The format goes by the name's ending, with .gz behind if
-/// the file is a gzip: PLY, OBJ, STL, OFF and VRML 2 (.wrl) by readers of our own; glTF, GLB, X3D and
+/// Reads a surface. The format goes by the name's ending; what is a gzip, by its name or not, is unzipped.
+/// PLY, OBJ, STL, OFF, glTF, GLB, 3MF, X3D (.x3d, .x3dv) and VRML 2 (.wrl) are read by readers of our own;
 /// whatever else assimp knows (FBX, Collada, 3DS, ...) by assimp, in a process of its own.
 ///
-/// All parts of the file become one mesh; polygons are cut into triangles (polygon.h), points and lines are
-/// left out. The vertices of a file stay as they are (an STL has three for each triangle: see repair.h to
-/// weld them), but an OBJ file's are those that its faces use, in that order, one for each position and
-/// normal. Texts are read to the last digit, so what is written comes back exactly. Normals are kept where
-/// the file has one for every vertex, or for every corner.
+/// Coordinates are in `units`; where those are not given, in what the file states (3MF, X3D, FBX, Collada,
+/// AMF and DXF can), or in metres. Where `units` and the file differ, `units` count, and a note says so.
+///
+/// All parts of the file become one mesh, as it is at rest; polygons are cut into triangles (polygon.h),
+/// points and lines are left out. The vertices of a file stay as they are (an STL has three for each
+/// triangle: see repair.h to weld them), but an OBJ file's are those that its faces use, in that order, one
+/// for each position and normal. Texts are read to the last digit, so what is written comes back exactly.
+/// Normals are kept where the file has one for every vertex, or for every corner.
 ///
 /// What lies so far from the origin that floats would lose its shape, a millimetre at a thousand kilometres,
 /// is moved to it. `notes` gets a line on that, and on whatever else was left out or changed.
@@ -27,11 +30,12 @@ namespace palpate {
 /// or beyond a float's range, or has faces that name vertices which do not exist. Memory stays within a small
 /// multiple of the file's size, whatever the file claims; a file that assimp is not done with after 15 s, or
 /// for which it crashes, is an Error too.
-Mesh read_mesh(const std::filesystem::path& path, Units units, std::vector<std::string>* notes = nullptr);
+Mesh read_mesh(const std::filesystem::path& path, std::optional<Units> units = {},
+               std::vector<std::string>* notes = nullptr);
 
 /// The same for a file's bytes, not zipped, that are in memory already. `name` chooses the format by its
 /// ending and stands in messages. A format that wants other files beside it is refused.
-Mesh parse_mesh(std::string_view bytes, const std::string& name, Units units,
+Mesh parse_mesh(std::string_view bytes, const std::string& name, std::optional<Units> units = {},
                 std::vector<std::string>* notes = nullptr);
 
 /// True if a name ends like a volume's (.nii, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, each also with .gz

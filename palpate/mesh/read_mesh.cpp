@@ -4,10 +4,13 @@
 #include "palpate/mesh/formats/formats.h"
 #include "palpate/mesh/read.h"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <memory>
 #include <new>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -17,26 +20,66 @@ struct Format {
     Draft (*read)(Source);
 };
 
-constexpr Format own_formats[] = {
-    {".ply", read_ply}, {".obj", read_obj}, {".stl", read_stl}, {".off", read_off}, {".wrl", read_vrml}};
+constexpr Format own_formats[] = {{".ply", read_ply},  {".obj", read_obj},   {".stl", read_stl},
+                                  {".off", read_off},  {".gltf", read_gltf}, {".glb", read_gltf},
+                                  {".vrm", read_gltf}, {".3mf", read_3mf},   {".x3d", read_x3d},
+                                  {".x3dz", read_x3d}, {".x3db", read_x3d},  {".x3dv", read_vrml},
+                                  {".wrl", read_vrml}, {".wrz", read_vrml},  {".vrml", read_vrml}};
 
-Draft read_draft(const Source& source, const std::string& format, const std::filesystem::path& folder) {
-    for (const Format& own : own_formats)
-        if (own.ending == format) return own.read(source);
-    return read_with_assimp(source, folder);
+// What stands at the beginning of a file that is no mesh at all, whatever its name says.
+struct Stranger {
+    std::string_view start, what, remedy;
+};
+
+constexpr Stranger strangers[] = {
+    {"version https://git-lfs", "a Git LFS pointer, not the file itself,", "fetch it with git lfs pull"},
+    {"<!DOCTYPE html", "a web page, not a mesh,", "download the file itself"},
+    {"<!doctype html", "a web page, not a mesh,", "download the file itself"},
+    {"<html", "a web page, not a mesh,", "download the file itself"},
+    {"BZh", "a file packed by bzip2", "unpack it first"},
+    {"\xfd"
+     "7zXZ",
+     "a file packed by xz", "unpack it first"},
+    {"\x28\xb5\x2f\xfd", "a file packed by zstd", "unpack it first"},
+    {"7z\xbc\xaf\x27\x1c", "a 7z archive", "unpack it first"},
+    {"Rar!\x1a\x07", "a RAR archive", "unpack it first"}};
+
+constexpr std::string_view zip = "PK\3\4", gzip = "\x1f\x8b";
+constexpr std::string_view zipped_formats[] = {".3mf", ".3d", ".zae", ".q3o", ".pk3"};
+
+void refuse_strangers(std::string_view bytes, const std::string& format, const std::string& name) {
+    for (const Stranger& stranger : strangers)
+        if (bytes.starts_with(stranger.start)) throw Error(stranger.what, name, stranger.remedy);
+    if (bytes.starts_with(zip) && std::ranges::count(zipped_formats, format) == 0)
+        throw Error("a ZIP archive", name, "unpack it first");
+}
+
+const Format* own_format(std::string_view ending) {
+    const auto found = std::ranges::find(own_formats, ending, &Format::ending);
+    return found == std::end(own_formats) ? nullptr : found;
+}
+
+// First bytes that leave no doubt, whatever the name ends with.
+constexpr std::pair<std::string_view, std::string_view> signs[] = {
+    {"glTF", ".glb"}, {"ply\n", ".ply"}, {"ply\r", ".ply"}, {"#VRML V", ".wrl"}, {"#X3D V", ".x3dv"}};
+
+Draft read_draft(const Source& source, const std::string& format) {
+    refuse_strangers(source.whole(), format, source.name());
+    const Format* const named = own_format(format);
+    for (const auto& [start, ending] : signs) {
+        const Format* const meant = own_format(ending);
+        if (!source.whole().starts_with(start) || (named && named->read == meant->read)) continue;
+        Draft draft = meant->read(source);
+        draft.notes.push_back(fmt::format("read as {}, which it is by its first bytes", ending));
+        return draft;
+    }
+    return named ? named->read(source) : read_with_assimp(source);
 }
 
 void check_format(const std::string& format, const std::string& name) {
-    for (const Format& own : own_formats)
-        if (own.ending == format) return;
-    if (!assimp_knows(format))
+    if (!own_format(format) && !assimp_knows(format))
         throw Error("cannot read the mesh format " + in_quotes(format), name,
-                    "use .ply, .obj, .stl, .off, .wrl, .gltf, .glb or .x3d, or one of them with .gz behind");
-}
-
-Mesh mesh_of(std::string_view bytes, const std::string& format, const std::string& name,
-             const std::filesystem::path& folder, Units units, std::vector<std::string>* notes) {
-    return finish(read_draft(Source(bytes, name), format, folder), units, name, notes);
+                    "use .ply, .obj, .stl, .off, .gltf, .glb, .3mf, .x3d or .wrl");
 }
 
 [[noreturn]] void out_of_memory(const std::string& name) {
@@ -67,25 +110,26 @@ std::string read_unzipped(const std::filesystem::path& path) {
 
 }  // namespace
 
-Mesh read_mesh(const std::filesystem::path& path, Units units, std::vector<std::string>* notes) {
-    const bool zipped = ending(path) == ".gz";
-    const std::string format = ending(zipped ? path.stem() : path);
+Mesh read_mesh(const std::filesystem::path& path, std::optional<Units> units,
+               std::vector<std::string>* notes) {
+    const std::string format = ending(ending(path) == ".gz" ? path.stem() : path);
     check_format(format, path.string());
     try {
-        const std::string bytes = zipped ? read_unzipped(path) : read_text(path);
+        std::string bytes = read_text(path);
+        if (bytes.starts_with(gzip)) bytes = read_unzipped(path);
         const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-        return mesh_of(bytes, format, path.string(), folder, units, notes);
+        return finish(read_draft(Source(bytes, path.string(), folder), format), units, path.string(), notes);
     } catch (const std::bad_alloc&) {
         out_of_memory(path.string());
     }
 }
 
-Mesh parse_mesh(std::string_view bytes, const std::string& name, Units units,
+Mesh parse_mesh(std::string_view bytes, const std::string& name, std::optional<Units> units,
                 std::vector<std::string>* notes) {
     const std::string format = ending(name);
     check_format(format, name);
     try {
-        return mesh_of(bytes, format, name, {}, units, notes);
+        return finish(read_draft(Source(bytes, name), format), units, name, notes);
     } catch (const std::bad_alloc&) {
         out_of_memory(name);
     }

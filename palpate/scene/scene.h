@@ -70,7 +70,7 @@ struct BodyRecipe {
     std::optional<ivec2> cloth;  // a rectangle of cloth
     bool sheet = false;          // the surface itself is cloth: a node a vertex, a spring an edge
     std::optional<float> iso;    // the value at the surface of a volume; else the one its values suggest
-    std::optional<Units> units;  // of the file; none: what a volume states, or millimetres; metres for a surface
+    std::optional<Units> units;  // of the file; else what it states, or mm (volumes), m (surfaces)
     vec3 rotate = vec3(0);       // degrees about x, then y, then z
     float size = 0;              // m: after turning, scale it so that its longest side is this; 0 leaves it
     bool centre = false;         // then bring the middle of its box to the origin
@@ -107,11 +107,11 @@ struct BodyRecipe {
 /// of which only the spacing is given here.
 struct ColliderRecipe {
     Collider collider;
-    std::string surface;          // a file of triangles ...
-    Units units = Units::metres;  // ... in these
-    vec3 rotate = vec3(0);        // degrees about x, then y, then z
-    vec3 move = vec3(0);          // m, after turning
-    Path path;                    // shift and rotation over time; empty: it stands still
+    std::string surface;         // a file of triangles ...
+    std::optional<Units> units;  // ... in these; else in what it states, or metres
+    vec3 rotate = vec3(0);       // degrees about x, then y, then z
+    vec3 move = vec3(0);         // m, after turning
+    Path path;                   // shift and rotation over time; empty: it stands still
     std::optional<vec3> about;  // the point that the rotation leaves where it is; else the shape's own middle
     vec3 colour = vec3(0.5f);
     int line = 0;

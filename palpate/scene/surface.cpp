@@ -59,8 +59,7 @@ Mesh from_volume(Work& work) {
 
 Mesh from_file(Work& work) {
     const BodyRecipe& recipe = work.recipe;
-    Mesh mesh = read_mesh(find_data(recipe.surface, work.folder), recipe.units.value_or(Units::metres),
-                          &work.result.notes);
+    Mesh mesh = read_mesh(find_data(recipe.surface, work.folder), recipe.units, &work.result.notes);
     work.did(fmt::format("read {} vertices, {} faces", mesh.positions.size(), mesh.triangles.size()));
     return mesh;
 }

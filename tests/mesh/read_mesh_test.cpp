@@ -241,7 +241,7 @@ TEST(ReadMesh, RefusesClaimsThatTheFileCannotHold) {
                                                  "element face 1\nproperty list uchar int vertex_index\n"
                                                  "end_header\n" +
                                                  three + three + face),
-               "one vertex");
+               "more than one vertex");
     // A second format, after the properties.
     std::string again = ply_header("ascii", "3", "1");
     again.insert(again.find("end_header"), "format binary_little_endian 1.0\n");
@@ -280,12 +280,13 @@ TEST(ReadMesh, RefusesFacesWithoutVertices) {
     const std::string three = "0 0 0\n1 0 0\n0 1 0\n";
     for (const char* face : {"3 0 1 3\n", "3 0 1 -1\n", "3 0 1 2147483647\n", "3 0 1 nan\n", "3 0 1 1e300\n"})
         EXPECT_HAS(mesh_error(scratch / "a.ply", ply_header("ascii", "3", "1") + three + face), "face 1");
-    EXPECT_HAS(mesh_error(scratch / "a.ply", ply_header("ascii", "3", "1") + three + "2 0 1\n"), "2 corners");
+    EXPECT_HAS(mesh_error(scratch / "a.ply", ply_header("ascii", "3", "1") + three + "2 0 1\n"),
+               "only points or lines");
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (const char* face : {"f 1 2 4\n", "f 1 2 0\n", "f 1 2 -4\n", "f 1 2 99999999999\n", "f 1 2 x\n",
                              "f 1 2 4294967295//1\n"})
         EXPECT_HAS(mesh_error(scratch / "a.obj", obj + face), "vertex");
-    EXPECT_HAS(mesh_error(scratch / "a.obj", obj + "f 1 2\n"), "line 4");
+    EXPECT_HAS(mesh_error(scratch / "a.obj", obj + "f 1 2\n"), "only points or lines");
     EXPECT_HAS(mesh_error(scratch / "a.obj", "v 0 0\nf 1 1 1\n"), "line 1");
 }
 
@@ -335,6 +336,33 @@ TEST(ReadMesh, SurvivesDamagedFilesInSilence) {
 }
 
 // ---- gzip ----
+
+TEST(ReadMesh, WhatAFileIsStandsInItsBytes) {
+    Scratch scratch;
+    const Mesh mesh = odd_mesh(50, true);
+    write_mesh(mesh, scratch / "plain.ply");
+    const std::string bytes = read_text(scratch / "plain.ply");
+    const std::filesystem::path zipped = scratch / "packed.ply";  // without .gz
+    gzFile file = gzopen(zipped.c_str(), "wb");
+    ASSERT_EQ(gzwrite(file, bytes.data(), unsigned(bytes.size())), int(bytes.size()));
+    gzclose(file);
+    EXPECT_TRUE(same_bytes(read_mesh(zipped).positions, mesh.positions));
+    put(scratch / "plain.ply.gz", bytes);  // with, but not packed
+    EXPECT_TRUE(same_bytes(read_mesh(scratch / "plain.ply.gz").positions, mesh.positions));
+    std::vector<std::string> notes;  // of a PLY that is said to be something else
+    for (const char* name : {"a.stl", "a.fbx"})
+        EXPECT_TRUE(same_bytes(parse_mesh(bytes, name, {}, &notes).positions, mesh.positions));
+    ASSERT_EQ(notes.size(), 2u);
+    EXPECT_HAS(notes[0], "read as .ply, which it is by its first bytes");
+    const std::pair<const char*, const char*> strangers[] = {
+        {"<!DOCTYPE html><html>", "a web page"},
+        {"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"},
+        {"PK\3\4", "a ZIP archive"},
+        {"BZh91AY", "bzip2"}};
+    for (const auto& [start, what] : strangers)
+        for (const char* name : {"a.stl", "a.obj", "a.ply", "a.glb", "a.fbx"})
+            EXPECT_HAS(parse_error(name, start), what) << name;
+}
 
 TEST(ReadMesh, AGzipReadsAsWhatIsInIt) {
     Scratch scratch;

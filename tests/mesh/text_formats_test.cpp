@@ -145,12 +145,119 @@ TEST(Obj, RareButLegal) {
     // Faces before their vertices, and the line ends of an old Macintosh.
     EXPECT_EQ(parse("a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0").triangles.size(), 1u);
     EXPECT_EQ(parse("a.obj", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").triangles.size(), 1u);
-    EXPECT_HAS(parse_error("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//2\n"),
-               "normal 2 of 1");
     EXPECT_HAS(parse_error("a.obj", std::string("\xff\xfev\0 \0", 6)), "UTF-16");
 }
 
+// The corners and faces of a box of 2 x 3 x 5, as texts.
+const Mesh brick = box(vec3(0), vec3(2, 3, 5));
+
+std::string rows_of(const std::vector<vec3>& points, std::string_view before = "",
+                    std::string_view behind = "\n") {
+    std::string text;
+    for (vec3 p : points) text += fmt::format("{}{} {} {}{}", before, p.x, p.y, p.z, behind);
+    return text;
+}
+
+std::string rows_of(const std::vector<uvec3>& faces, unsigned first, std::string_view before,
+                    std::string_view behind = "\n") {
+    std::string text;
+    for (uvec3 t : faces)
+        text += fmt::format("{} {} {} {}{}", before, t.x + first, t.y + first, t.z + first, behind);
+    return text;
+}
+
+std::string old_macintosh(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', '\r');
+    return text;
+}
+
+// That it is read as the brick, with one note, or without one.
+void expect_brick(const std::string& name, const std::string& text, const std::string& note = "") {
+    std::vector<std::string> notes;
+    const Mesh mesh = parse(name, text, &notes);
+    EXPECT_EQ(mesh.triangles.size(), 12u) << text;
+    EXPECT_EQ(bounds(mesh).low, vec3(0)) << text;
+    EXPECT_EQ(bounds(mesh).high, vec3(2, 3, 5)) << text;
+    EXPECT_LE(std::abs(volume(mesh) - 30), 1e-4) << text;
+    ASSERT_EQ(notes.size(), note.empty() ? 0u : 1u) << text;
+    if (!note.empty()) EXPECT_HAS(notes[0], note);
+}
+
+TEST(Obj, WhatBearsOnNoShapeCostsNone) {
+    const std::string points = rows_of(brick.positions, "v "), faces = rows_of(brick.triangles, 1, "f");
+    std::string textured, normals;
+    for (uvec3 t : brick.triangles) {
+        textured += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", t.x + 1, t.y + 1, t.z + 1);
+        normals += fmt::format("f {}//1 {}//1 {}//2\n", t.x + 1, t.y + 1, t.z + 1);
+    }
+    expect_brick("a.obj", points + faces + "f 1 2\nl 1 3\n", "left out 2 points and lines");
+    expect_brick("a.obj", points + faces + "f 1\np 1 2 3\nf\n", "left out 3 points and lines");
+    expect_brick("a.obj", points + textured, "left the texture coordinates out: 36 corners");
+    expect_brick("a.obj", points + "vn 0 0 1\n" + normals, "left the normals out: 12 corners");
+    expect_brick("a.obj", points + "vn 0 0 1\nvn -1.#IND -1.#IND 1.#QNAN\n" + normals,
+                 "left the normals out");
+    expect_brick("a.obj", points + "vn 0 0 1\nvn 0 0\n" + normals, "left the normals out");
+    expect_brick("a.obj", points + "vn 0 0 1\nvn 0 0 x\n" + normals, "left the normals out");
+    expect_brick("a.obj", points + faces + "cstype bspline\nsurf 0 1 0 1 1 2 3 4\nend\n",
+                 "left out 1 free-form curves and surfaces");
+    expect_brick("a.obj", points + rows_of(brick.triangles, 1, "fo"));
+    expect_brick("a.obj", old_macintosh(points + faces));
+    expect_brick("a.obj", rows_of(brick.positions, "v ", " 0.5 0.5 0.5 # red\n") +
+                              rows_of(brick.triangles, 1, "f", "# x\n"));
+    EXPECT_HAS(parse_error("a.obj", points + "l 1 2\n"), "no faces, only points or lines");
+    EXPECT_HAS(parse_error("a.obj", "v 0 0 -1.#IND\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+               "vertex 1 of 3 not finite");
+    EXPECT_EQ(parse("a.obj", "v 0 0 0\nv 1.5D+00 0 0\nv 0 1d-1 0\nf 1 2 3\n").positions[1], vec3(1.5f, 0, 0));
+}
+
 // ---- PLY ----
+
+std::string ply_head(const std::string& more = "", int faces = 12, const char* format = "ascii",
+                     const char* index = "int") {
+    return fmt::format(
+        "ply\nformat {} 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n{}"
+        "element face {}\nproperty list uchar {} vertex_indices\nend_header\n",
+        format, more, faces, index);
+}
+
+TEST(Ply, AsStrangersWriteIt) {
+    const std::string points = rows_of(brick.positions), faces = rows_of(brick.triangles, 0, "3");
+    expect_brick("a.ply", old_macintosh(ply_head() + points + faces));
+    expect_brick("a.ply", ply_head("", 14) + points + faces + "2 0 1\n0\n", "left out 2 points and lines");
+    expect_brick("a.ply",
+                 ply_head() + points + rows_of(brick.triangles, 0, "3", " 6 0 0 1 0 0 1\n"));  // undeclared
+    expect_brick("a.ply", ply_head() + rows_of(brick.positions, "", " 255 0 0 255\n") + faces);
+    expect_brick("a.ply",
+                 ply_head() + rows_of(brick.positions, "", " ") + rows_of(brick.triangles, 0, " 3", ""));
+    expect_brick("a.ply", ply_head("property float nx\n") + rows_of(brick.positions, "", " 0\n") + faces,
+                 "left the normals out");
+    std::string head = ply_head();
+    head.replace(head.find("vertex_indices"), 14, "vertex_indexes");
+    expect_brick("a.ply", head + points + faces);
+    for (const char* format : {"binary_little_endian", "binary_big_endian"})
+        for (const char* index : {"int64", "uint64", "uint8", "int"}) {
+            const bool swapped = format[7] == 'b';
+            std::string bytes = old_macintosh(ply_head("", 12, format, index));
+            for (vec3 p : brick.positions)
+                for (int k = 0; k < 3; ++k) bytes += bytes_of(p[k], swapped);
+            for (uvec3 t : brick.triangles) {
+                bytes += '\3';
+                for (int k = 0; k < 3; ++k)
+                    bytes += std::string_view(index).ends_with("64") ? bytes_of(std::int64_t(t[k]), swapped)
+                             : *index == 'u'                         ? std::string(1, char(t[k]))
+                                                                     : bytes_of(int(t[k]), swapped);
+            }
+            expect_brick("a.ply", bytes);
+        }
+}
+
+TEST(Ply, StripsOfTriangles) {
+    const std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n10 0 1 2 3 -1 2 3 3 4 5\n";
+    EXPECT_EQ(parse("a.ply", text).triangles, (std::vector<uvec3>{{0, 1, 2}, {2, 1, 3}, {3, 4, 5}}));
+}
 
 TEST(Ply, BigEndianDoublesAmidOthers) {
     std::string bytes =
@@ -179,9 +286,9 @@ TEST(Ply, BigEndianDoublesAmidOthers) {
 TEST(Ply, RefusesWhatItCannotTakeRightly) {
     const std::string head =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
-    EXPECT_HAS(parse_error("a.ply", head + "element tristrips 1\nproperty list int int vertex_indices\n"
+    EXPECT_HAS(parse_error("a.ply", head + "element range_grid 1\nproperty list int int vertex_indices\n"
                                            "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
-               "tristrips");
+               "grid of ranges");
     EXPECT_HAS(parse_error("a.ply", head + "end_header\n0 0 0\n1 0 0\n0 1 0\n"), "no faces");
     // Floats have lost the shape of what lies so far away before we see them.
     Mesh mesh = box(vec3(1e6f), vec3(1e6f + 1));
@@ -229,8 +336,13 @@ TEST(Stl, BinaryWhateverItsHeaderSays) {
             for (int k = 0; k < 3; ++k)
                 EXPECT_EQ(back.positions[back.triangles[f][k]], mesh.positions[mesh.triangles[f][k]]);
     }
-    EXPECT_EQ(parse("a.stl", stl_of(mesh, "solid", 12) + "and more").triangles.size(), 12u);
-    EXPECT_EQ(parse("a.stl", stl_of(mesh, "solid", 11)).triangles.size(), 11u);
+    for (const char* header : {"solid", "solid facet normal endsolid"})
+        for (const char* more : {"12", "and more"})
+            EXPECT_EQ(parse("a.stl", stl_of(mesh, header, 12) + more).triangles.size(), 12u);
+    std::vector<std::string> notes;
+    EXPECT_EQ(parse("a.stl", stl_of(mesh, "solid", 11), &notes).triangles.size(), 11u);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_HAS(notes[0], "left out 50 bytes behind the 11 facets");
     for (std::uint32_t lie : {13u, 1'000'000'000u, 4'294'967'295u})
         EXPECT_HAS(parse_error("a.stl", stl_of(mesh, "solid", lie)), "12 there");
     EXPECT_HAS(parse_error("a.stl", stl_of(Mesh(), "solid", 0)), "no faces");
@@ -242,6 +354,42 @@ TEST(Stl, BinaryWhateverItsHeaderSays) {
     EXPECT_HAS(parse_error("a.stl", stl_of(box(vec3(0), vec3(INFINITY)), "", 12)), "not finite");
 }
 
+// A solid's text, of whose lines one is another.
+std::string stl_text(const std::string& line = "", const std::string& in_its_place = "") {
+    std::string text = "solid box\n";
+    for (uvec3 t : brick.triangles) {
+        text += "facet normal 0 0 1\n  outer loop\n";
+        for (int k = 0; k < 3; ++k) text += "    vertex " + rows_of({brick.positions[t[k]]});
+        text += "  endloop\nendfacet\n";
+    }
+    text += "endsolid box\n";
+    for (std::size_t at = line.empty() ? text.npos : text.find(line); at != text.npos;
+         at = text.find(line, at + in_its_place.size()))
+        text.replace(at, line.size(), in_its_place);
+    return text;
+}
+
+TEST(Stl, TextAsStrangersWriteIt) {
+    expect_brick("a.stl", stl_text());
+    expect_brick("a.stl", old_macintosh(stl_text()));
+    expect_brick("a.stl", stl_text("endloop", "end loop"));
+    expect_brick("a.stl", stl_text("endfacet", "END FACET"));
+    expect_brick("a.stl", stl_text("endsolid box", "end solid box"));
+    expect_brick("a.stl", stl_text("facet normal 0 0 1", "facet normal -1.#IND -1.#IND -1.#IND"));
+    expect_brick("a.stl", stl_text("facet normal 0 0 1", "facet"));
+    expect_brick("a.stl", stl_text("facet normal 0 0 1", "facet normal"));
+    expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\ncolor 0.7 0.7 0.7\nfacet"),
+                 "read over 1 lines that are no part of a shape, the first with \"color\"");
+    expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\n# in mm\nfacet"), "the first with \"#\"");
+    expect_brick("a.stl", stl_text("endfacet", "attribute 0 vertex 1 2 3\nendfacet"), "read over 12 lines");
+    expect_brick("a.stl", "# by hand\n\n" + stl_text(), "read over 1 lines");
+    expect_brick("a.stl", stl_text("endsolid box\n", ""), "ends without \"endsolid\"");
+    std::string in_one_line = stl_text();
+    std::replace(in_one_line.begin(), in_one_line.end(), '\n', ' ');
+    expect_brick("a.stl", in_one_line);
+    EXPECT_HAS(parse_error("a.stl", stl_text("endfacet\nendsolid box\n", "")), "truncated");
+}
+
 TEST(Stl, TextInAnyCapitalsAndSeveralSolids) {
     const std::string text =
         "Solid of vertex and facet\r\n\tFACET Normal 0 0 1\r\nOUTER Loop\r\nVertex 0 0 0\r\nvertex 1 0 0\r\n"
@@ -251,13 +399,12 @@ TEST(Stl, TextInAnyCapitalsAndSeveralSolids) {
     const Mesh mesh = parse("a.STL", text);
     EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{0, 1, 2}, {3, 4, 5}}));
     EXPECT_EQ(mesh.positions[5], vec3(0, 1, 1));
-    for (std::size_t length = 0; length < text.find("ENDSOLID"); ++length)
+    for (std::size_t length = 0; length < text.find("Facet\r\nENDSOLID") + 5; ++length)
         EXPECT_NE(parse_error("a.stl", text.substr(0, length)), "no error") << length;
     EXPECT_HAS(parse_error("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\nendsolid"),
                "1 corners in line 5");
     EXPECT_HAS(parse_error("a.stl", "solid\nfacet\nouter loop\nvertex 0 0\nvertex 1 1 1\nendsolid"),
                "line 5");
-    EXPECT_HAS(parse_error("a.stl", "solid\nfacet\nsomething else\nendsolid"), "\"something\" in line 3");
     EXPECT_HAS(parse_error("a.stl", "solid\nendsolid\n"), "no faces");
 }
 
@@ -283,6 +430,26 @@ TEST(Off, EveryHeaderThatTellsOfSurfaces) {
                                              "0 1 0 0 1 0 1 1 1\n3 0 1 2\n");
         EXPECT_EQ(mesh.normals, (std::vector<vec3>{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}})) << head;
     }
+}
+
+TEST(Off, WordsInAnyLines) {
+    const std::string points = rows_of(brick.positions), faces = rows_of(brick.triangles, 0, "3");
+    const auto in_a_line = [](std::string text) {
+        std::replace(text.begin(), text.end(), '\n', ' ');
+        return text;
+    };
+    for (const char* head :
+         {"OFF8 12 0\n", "OFF 8 12 0\n", "OFF\n8\n12\n0\n", "off\n8 12 0\n", "OFF\n8 12\n", "8 12 18\n"}) {
+        expect_brick("a.off", head + points + faces);
+        expect_brick("a.off", old_macintosh(head + points + faces));
+        expect_brick("a.off", head + in_a_line(points) + "\n" + in_a_line(faces));
+    }
+    expect_brick("a.off", in_a_line("OFF 8 12 0 " + points + faces));
+    expect_brick("a.off", "OFF 8 12 0\n" + points + rows_of(brick.triangles, 0, "3", " 255 0 0# red\n"));
+    expect_brick("a.off", "COFF 8 12 0\n" + rows_of(brick.positions, "", " 1 0 0\n") + faces);
+    expect_brick("a.off",
+                 "STCOFF 8 12 0 " + rows_of(brick.positions, "", " 0.5 1 0 1 1 1 ") + in_a_line(faces));
+    EXPECT_HAS(parse_error("a.off", in_a_line("OFF 8 12 0 " + points + faces + "7")), "more numbers");
 }
 
 TEST(Off, RefusesTheRest) {

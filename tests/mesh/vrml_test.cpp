@@ -62,12 +62,15 @@ TEST(Vrml, ReadsOverTheRest) {
 
 TEST(Vrml, OtherShapesAreLeftOutWithANote) {
     std::vector<std::string> notes;
-    EXPECT_EQ(parse(shape + " Shape { geometry Box { size 1 1 1 } } Shape { geometry Sphere { } }", &notes)
-                  .triangles.size(),
-              1u);
+    EXPECT_EQ(
+        parse(shape + " Shape { geometry Text { string \"a\" } } Shape { geometry DEF x NurbsCurve { } }",
+              &notes)
+            .triangles.size(),
+        1u);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_HAS(notes[0], "Box Sphere");
-    EXPECT_HAS(refused("Shape { geometry Cone { } }"), "no IndexedFaceSet: Cone");
+    EXPECT_HAS(notes[0], "NurbsCurve Text");
+    EXPECT_HAS(refused("Shape { geometry Text { } }"), "no faces, only shapes that are not read: Text");
+    EXPECT_EQ(parse("Shape { geometry Box { size 1 2 3 } }").triangles.size(), 12u);
 }
 
 // Turns v about a unit axis by Rodrigues' formula.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace palpate {
 namespace {
 
@@ -11,16 +13,13 @@ class Off {
 
     Draft read() {
         source_.skip_mark();
-        std::string_view first = next();
-        const bool headed = first.ends_with("OFF"), normals = headed && read_header(first);
-        if (headed) first = next();
-        if (!headed && !spelled(first)) source_.broken("no OFF header");  // to begin with numbers is allowed
-        const double vertices = count(first, "vertices"), faces = count(next(), "faces");
-        source_.line();  // where the number of edges is, which nobody keeps right
+        if (!spelled(peek())) read_header();  // to begin with the counts is allowed
+        const double vertices = count("vertices"), faces = count("faces");
+        read_edges(vertices + faces);
         for (double i = 0; i < vertices; ++i) {
             draft_.positions.push_back(vector());
-            if (normals) draft_.normals.push_back(vector());
-            source_.line();  // colours, places in a texture
+            if (normals_) draft_.normals.push_back(vector());
+            end_row(more_);
         }
         for (double i = 0; i < faces; ++i) {
             const double size = number();
@@ -34,39 +33,80 @@ class Off {
                 draft_.corners.push_back(Index(corner));
             }
             draft_.sizes.push_back(Index(size));
-            source_.line();  // its colour
+            end_row(0);
         }
+        if (!rows_are_lines_ && !next().empty()) source_.broken("more numbers than the counts promise");
         return std::move(draft_);
     }
 
  private:
-    // [ST][C][N][4][n]OFF, with what each vertex has besides. Returns whether that is a normal.
-    bool read_header(std::string_view header) {
-        std::string_view has = header.substr(0, header.size() - 3);
+    // [ST][C][N][4][n]OFF, with what each vertex has besides; the counts may follow without a space.
+    void read_header() {
+        const std::string_view text = source_.rest, first = next();
+        const std::size_t off = std::min({first.find("OFF"), first.find("off"), first.find("Off")});
+        if (off == std::string_view::npos) source_.broken("no OFF header");
+        std::string_view has = first.substr(0, off);
+        source_.rest = text.substr(std::size_t(first.data() - text.data()) + off + 3);
         auto takes = [&](std::string_view prefix) {
             const bool found = has.starts_with(prefix);
             if (found) has.remove_prefix(prefix.size());
             return found;
         };
-        takes("ST"), takes("C");
-        const bool normals = takes("N");
+        if (takes("ST")) more_ += 2;
+        if (takes("C")) more_ += 4;
+        normals_ = takes("N");
         if (!has.empty())
-            source_.broken("the header " + in_quotes(header) + ", which is not of three dimensions,",
+            source_.broken("the header " + in_quotes(first) + ", which is not of three dimensions,",
                            "export it as plain OFF");
-        std::string_view ahead = source_.rest;
-        if (word(ahead) == "BINARY") source_.broken("a binary OFF", "export it as text");
-        return normals;
+        if (peek() == "BINARY") source_.broken("a binary OFF, which is not read,", "export it as text");
+    }
+
+    // The number of edges, which nobody keeps right and some leave out: behind the other counts, or alone in
+    // a line. Where there are lines enough, each row is one, and may end with colours; where there are not,
+    // rows are words.
+    void read_edges(double rows) {
+        Source ahead = source_;
+        std::string_view here = before_comment(ahead.line());
+        const bool with_counts = !word(here).empty();
+        rows_are_lines_ = ahead.lines_with_words(rows) >= rows;
+        if (with_counts) {
+            next();
+            if (rows_are_lines_) source_.line();
+        } else if (next_line_has_one_word()) {
+            next();
+        }
+    }
+
+    bool next_line_has_one_word() const {
+        for (Source ahead = source_; !ahead.rest.empty();) {
+            std::string_view line = before_comment(ahead.line());
+            if (!word(line).empty()) return word(line).empty();
+        }
+        return false;
+    }
+
+    void end_row(int words) {
+        if (rows_are_lines_)
+            source_.line();
+        else
+            for (int k = 0; k < words; ++k) next();
+    }
+
+    std::string_view peek() {
+        const std::string_view here = source_.rest, found = next();
+        source_.rest = here;
+        return found;
     }
 
     // The next word that is not in a comment.
     std::string_view next() {
         for (;;) {
-            const std::string_view text = source_.rest, found = word(source_.rest);
-            const std::size_t comment = found.find('#');
-            if (comment == std::string_view::npos) return found;
-            source_.rest = text.substr(std::size_t(found.data() - text.data()) + comment);
+            const std::string_view text = source_.rest, found = word(source_.rest),
+                                   plain = before_comment(found);
+            if (plain.size() == found.size()) return found;
+            source_.rest = text.substr(std::size_t(found.data() - text.data()) + plain.size());
             source_.line();
-            if (comment > 0) return found.substr(0, comment);
+            if (!plain.empty()) return plain;
         }
     }
 
@@ -81,14 +121,16 @@ class Off {
         return {x, y, z};
     }
 
-    double count(std::string_view found, std::string_view what) const {
-        const auto number = spelled(found);
+    double count(std::string_view what) {
+        const auto number = spelled(next());
         if (!number || !is_whole(*number, 0, 0xfffffffep0))
             source_.broken(fmt::format("no number of {}", what));
         return *number;
     }
 
     Source source_;
+    bool normals_ = false, rows_are_lines_ = false;
+    int more_ = 0;  // numbers that each vertex has besides
     Draft draft_;
 };
 

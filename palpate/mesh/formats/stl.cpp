@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -30,13 +31,17 @@ bool alike(std::string_view a, std::string_view b) {
                       [](unsigned char c, unsigned char d) { return std::tolower(c) == std::tolower(d); });
 }
 
-bool mentions(std::string_view text, std::string_view what) {
-    return std::search(text.begin(), text.end(), what.begin(), what.end(),
-                       [](unsigned char a, char b) { return std::tolower(a) == b; }) != text.end();
+// Where a text has some small letters, whatever their size there; npos if it has not.
+std::size_t place_of(std::string_view what, std::string_view text) {
+    const auto found = std::search(text.begin(), text.end(), what.begin(), what.end(),
+                                   [](unsigned char a, char b) { return std::tolower(a) == b; });
+    return found == text.end() ? std::string_view::npos : std::size_t(found - text.begin());
 }
 
+// A text has no zeros, of which a binary file has some in the number of its facets.
 bool is_text(std::string_view bytes) {
-    return alike(word(bytes), "solid") && (mentions(bytes, "facet") || mentions(bytes, "endsolid"));
+    const auto has = [&](std::string_view what) { return place_of(what, bytes) != std::string_view::npos; };
+    return bytes.substr(0, 1000).find('\0') == std::string_view::npos && (has("facet") || has("endsolid"));
 }
 
 Draft read_binary(const Source& source) {
@@ -47,6 +52,9 @@ Draft read_binary(const Source& source) {
     if (count > std::numeric_limits<Index>::max() / 3) source.broken("too many facets");
     Draft draft;
     draft.single = true;
+    if (const std::size_t left = bytes.size() - counted - count * facet; left >= facet)
+        draft.notes.push_back(
+            fmt::format("left out {} bytes behind the {} facets that the file says it has", left, count));
     draft.sizes.assign(count, 3);
     draft.positions.reserve(3 * count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -61,37 +69,94 @@ Draft read_binary(const Source& source) {
 }
 
 // solid NAME, then facets (facet normal X Y Z, outer loop, three times vertex X Y Z, endloop, endfacet), then
-// endsolid NAME; all that perhaps several times, in any capitals.
-Draft read_text(Source& source) {
-    Draft draft;
-    bool in_solid = false, in_loop = false;
-    Index size = 0;  // corners of the face so far
-    for (auto key = word(source.rest); !key.empty(); key = word(source.rest)) {
-        if (alike(key, "solid") || alike(key, "endsolid")) {
-            if (in_loop) source.broken_here("a loop without end");
-            in_solid = key.size() == 5;
-            source.line();  // a name
-        } else if (alike(key, "outer") || alike(key, "endloop")) {
-            in_loop = key.size() == 5;
-            if (in_loop) continue;
-            if (size < 3) source.broken_here(fmt::format("a loop of {} corners", size));
-            draft.sizes.push_back(size);
-            size = 0;
-        } else if (alike(key, "vertex") && in_loop) {
-            dvec3 p;
-            for (int k = 0; k < 3; ++k) p[k] = source.number(word(source.rest));
-            draft.corners.push_back(Index(draft.positions.size()));
-            draft.positions.push_back(p);
-            ++size;
-        } else if (alike(key, "normal")) {
-            for (int k = 0; k < 3; ++k) word(source.rest);  // faces know their own
-        } else if (!alike(key, "facet") && !alike(key, "loop") && !alike(key, "endfacet")) {
-            source.broken_here("the unknown word " + in_quotes(key));
+// endsolid NAME; all that perhaps several times, in any capitals, its ends in one word or two. Only the
+// vertices count: a line that begins with another word (a colour, a comment) is read over.
+class StlText {
+ public:
+    explicit StlText(Source source) : source_(std::move(source)) {}
+
+    Draft read() {
+        for (auto key = word(source_.rest); !key.empty(); key = word(source_.rest)) take(key);
+        if (in_loop_ || in_facet_) source_.broken("no end of the solid: truncated");
+        if (in_solid_)
+            draft_.notes.push_back("the text ends without \"endsolid\": facets may be missing from the file");
+        if (!others_.empty())
+            draft_.notes.push_back(
+                fmt::format("read over {} lines that are no part of a shape, the first with {}",
+                            others_.size(), in_quotes(others_.front())));
+        return std::move(draft_);
+    }
+
+ private:
+    void take(std::string_view key) {
+        const bool ends = key.size() > 3 && alike(key.substr(0, 3), "end");
+        if (ends)
+            end(key.substr(3));
+        else if (alike(key, "end"))
+            end(word(source_.rest));
+        else if (alike(key, "solid"))
+            in_solid_ = true, pass_name();
+        else if (alike(key, "facet"))
+            in_facet_ = true;
+        else if (alike(key, "outer"))
+            in_loop_ = true;
+        else if (alike(key, "vertex") && in_loop_)
+            add_vertex();
+        else if (alike(key, "normal"))
+            pass_numbers();  // faces know their own
+        else if (!alike(key, "loop"))
+            pass_line(key);
+    }
+
+    void end(std::string_view what) {
+        if (alike(what, "solid")) {
+            if (in_loop_) source_.broken_here("a loop without end");
+            in_solid_ = false;
+            pass_name();
+        } else if (alike(what, "facet")) {
+            in_facet_ = false;
+        } else if (alike(what, "loop")) {
+            if (size_ < 3) source_.broken_here(fmt::format("a loop of {} corners", size_));
+            draft_.sizes.push_back(std::exchange(size_, 0));
+            in_loop_ = false;
+        } else {
+            pass_line(what);
         }
     }
-    if (in_solid) source.broken("no end of the solid: truncated");
-    return draft;
-}
+
+    void add_vertex() {
+        dvec3 p;
+        for (int k = 0; k < 3; ++k) p[k] = source_.number(word(source_.rest));
+        draft_.corners.push_back(Index(draft_.positions.size()));
+        draft_.positions.push_back(p);
+        ++size_;
+    }
+
+    void pass_numbers() {
+        std::string_view ahead = source_.rest;
+        for (int k = 0; k < 3 && spelled(word(ahead)); ++k) source_.rest = ahead;
+    }
+
+    // The rest of the line, or what of it stands before its first facet.
+    void pass_name() {
+        const std::string_view text = source_.rest, line = source_.line();
+        if (const std::size_t facet = place_of("facet normal", line); facet != std::string_view::npos)
+            source_.rest = text.substr(facet);
+    }
+
+    void pass_line(std::string_view key) {
+        const std::string_view text = source_.rest;
+        const bool whole = text.starts_with('\n') || text.starts_with('\r');
+        if (!whole) source_.line();
+        others_.push_back(key);
+    }
+
+    Source source_;
+    Draft draft_;
+    bool in_solid_ = false, in_facet_ = false, in_loop_ = false;
+    Index size_ = 0;                        // corners of the face so far
+    std::vector<std::string_view> others_;  // words that begin what is read over
+};
 
 }  // namespace
 
@@ -101,7 +166,7 @@ Draft read_stl(Source source) {
     if (bytes.size() >= counted && bytes.size() == counted + facet * promised(bytes))
         return read_binary(source);
     source.skip_mark();
-    return is_text(source.rest) ? read_text(source) : read_binary(source);
+    return is_text(source.rest) ? StlText(std::move(source)).read() : read_binary(source);
 }
 
 }  // namespace palpate

@@ -1,16 +1,20 @@
-// VRML 2 as far as it tells of surfaces: IndexedFaceSets, in Shapes, in nodes that group and move them. All
-// else is read over. Nothing is kept of the tree: faces go straight to the draft, in the node's own
-// coordinates, and a Transform then moves what its children have added. DEF keeps where in the text a node
-// stands, and USE reads it there once more.
+// VRML 2, and X3D in its words, as far as they tell of surfaces: sets of faces and of triangles, and the
+// solids that have a name, in Shapes, in nodes that group and move them. All else is read over. Nothing is
+// kept of the tree: faces go straight to the draft, in the node's own coordinates, and a Transform then moves
+// what its children have added. DEF keeps where in the text a node stands, and USE reads it there once more.
 #include "palpate/mesh/formats/formats.h"
+#include "palpate/mesh/formats/place.h"
+#include "palpate/mesh/formats/solids.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace palpate {
@@ -21,23 +25,61 @@ constexpr int most_nested = 200;
 // How much may be read in all because a USE repeats it: enough for a forest, too little for a bomb.
 constexpr std::size_t repeated_bytes = std::size_t(16) << 20, repeated_times = 16;
 
+// How many solids, of which a round one takes 20 kB: enough for a molecule.
+constexpr std::size_t solids = 10'000, bytes_a_solid = 400;
+
 using Numbers = std::vector<double>;
+
+using Rotation = std::array<double, 4>;  // an axis and an angle
 
 // The fields of a Transform; what they are where it does not say.
 struct Placement {
     dvec3 center{0}, scale{1}, translation{0};
-    std::array<double, 4> rotation{0, 0, 1, 0}, scale_orientation{0, 0, 1, 0};
+    Rotation rotation{0, 0, 1, 0}, scale_orientation{0, 0, 1, 0};
 };
 
-// By an angle about an axis; about none, if that has no length.
-dmat3 turn(const std::array<double, 4>& by) {
-    dvec3 a(by[0], by[1], by[2]);
-    const double length = glm::length(a);
-    if (!(length > 0)) return dmat3(1);
-    a /= length;
-    const double s = std::sin(by[3]), c = std::cos(by[3]);
-    const dmat3 cross(0, a.z, -a.y, -a.z, 0, a.x, a.y, -a.x, 0);
-    return c * dmat3(1) + s * cross + (1 - c) * glm::outerProduct(a, a);
+constexpr std::string_view groups[] = {
+    "Group",         "Anchor",       "Billboard",   "Collision",   "Switch",        "LOD",   "StaticGroup",
+    "PickableGroup", "HAnimSegment", "CADLayer",    "CADAssembly", "CADFace",       "Layer", "LayerSet",
+    "LayoutLayer",   "LayoutGroup",  "ScreenGroup", "Viewport",    "ViewpointGroup"};
+constexpr std::string_view transforms[] = {"Transform", "HAnimHumanoid", "HAnimJoint",
+                                           "HAnimSite", "CADPart",       "EspduTransform"};
+constexpr std::string_view child_fields[] = {"children", "choice", "level",    "shape",
+                                             "layers",   "skin",   "skeleton", "viewport"};
+constexpr std::string_view face_sets[] = {
+    "IndexedFaceSet",        "IndexedTriangleSet", "IndexedTriangleStripSet",
+    "IndexedTriangleFanSet", "IndexedQuadSet",     "TriangleSet",
+    "TriangleStripSet",      "TriangleFanSet",     "QuadSet"};
+
+bool is_in(std::span<const std::string_view> names, std::string_view name) {
+    return std::ranges::count(names, name) > 0;
+}
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // a place in no texture
+
+// Corners in runs that -1 ends, cut into faces: triangles, or what the set is of.
+Numbers as_faces(std::string_view set, const Numbers& runs) {
+    const bool strip = set.ends_with("StripSet"), fan = set.ends_with("FanSet");
+    const std::size_t each = set.ends_with("QuadSet") ? 4 : 3;
+    Numbers faces;
+    for (std::size_t start = 0, end; start < runs.size(); start = end + 1) {
+        end = std::size_t(std::find(runs.begin() + std::ptrdiff_t(start), runs.end(), -1) - runs.begin());
+        const double* const run = runs.data() + start;
+        const std::size_t length = end - start;
+        if (strip || fan) {
+            for (std::size_t i = 0; i + 2 < length; ++i) {
+                const std::size_t a = fan ? 0 : i + i % 2, b = fan ? i + 1 : i + 1 - i % 2;
+                if (run[a] != run[b] && run[b] != run[i + 2] && run[i + 2] != run[a])
+                    faces.insert(faces.end(), {run[a], run[b], run[i + 2], -1});
+            }
+        } else {
+            for (std::size_t i = 0; i + each <= length; i += each) {
+                faces.insert(faces.end(), run + i, run + i + each);
+                faces.push_back(-1);
+            }
+        }
+    }
+    return faces;
 }
 
 // How much of the draft there was at some time.
@@ -48,23 +90,44 @@ struct Mark {
 class Vrml {
  public:
     explicit Vrml(Source source)
-        : source_(std::move(source)), may_repeat_(repeated_bytes + repeated_times * source_.whole().size()) {}
+        : source_(std::move(source)),
+          may_repeat_(repeated_bytes + repeated_times * source_.whole().size()),
+          may_build_(solids + source_.whole().size() / bytes_a_solid) {}
 
-    Draft read() {
+    Draft read(bool has_header) {
         source_.skip_mark();
-        if (source_.rest.starts_with("#VRML V1.0")) source_.broken("VRML 1.0", "convert it to VRML 2 (97)");
-        if (!source_.rest.starts_with("#VRML V2.0")) source_.broken("no VRML 2 header");
+        if (has_header) read_header();
         while (!ahead().empty())
             if (!skip_statement(ahead())) node();
-        if (others_.empty()) return std::move(draft_);
-        std::string left_out = "no IndexedFaceSet:";
-        for (std::string_view other : others_) left_out += ' ' + std::string(other);
-        if (draft_.sizes.empty()) source_.broken(left_out, "convert it to triangles");
-        draft_.notes.push_back("left out what is " + left_out);
+        tell_of_others();
+        tell_of_textures();
         return std::move(draft_);
     }
 
  private:
+    void read_header() {
+        if (source_.rest.starts_with("#VRML V1.0")) source_.broken("VRML 1.0", "convert it to VRML 2 (97)");
+        if (!source_.rest.starts_with("#VRML V2.0") && !source_.rest.starts_with("#X3D V"))
+            source_.broken("no VRML 2 header");
+    }
+
+    void tell_of_others() {
+        if (others_.empty()) return;
+        std::string left_out = "shapes that are not read:";
+        for (std::string_view other : others_) left_out += ' ' + std::string(other);
+        if (draft_.sizes.empty()) source_.broken("no faces, only " + left_out, "convert it to triangles");
+        draft_.notes.push_back("left out " + left_out);
+    }
+
+    // They are kept where all parts have them.
+    void tell_of_textures() {
+        if (astray_ > 0)
+            draft_.notes.push_back(fmt::format(
+                "left the texture coordinates out: {} corners name ones that are not there", astray_));
+        const auto missing = [](dvec2 uv) { return std::isnan(uv.x); };
+        if (astray_ > 0 || std::ranges::any_of(draft_.uvs, missing)) draft_.uvs.clear();
+    }
+
     // --- words ---
 
     // The next word, left where it is: a bracket, a text in quotes, or what runs up to a space or one of
@@ -126,6 +189,19 @@ class Vrml {
         return values;
     }
 
+    Rotation rotation() {
+        Rotation by = just<4>();
+        by[3] *= angle_;
+        return by;
+    }
+
+    static dmat3 turn(const Rotation& by) { return turn_about({by[0], by[1], by[2]}, by[3]); }
+
+    bool truth() {
+        const std::string_view word = next();
+        return word != "FALSE" && word != "false";
+    }
+
     dvec3 vector() {
         const auto [x, y, z] = just<3>();
         return {x, y, z};
@@ -165,9 +241,30 @@ class Vrml {
     bool skip_statement(std::string_view word) {
         if (word == "PROTO" || word == "EXTERNPROTO")
             source_.broken("a PROTO, a node of its own making,", "convert it with another program");
-        if (word != "ROUTE") return false;
-        for (int k = 0; k < 4; ++k) next();
+        if (word == "UNIT") {
+            next();
+            read_unit();
+            return true;
+        }
+        constexpr std::pair<std::string_view, int> statements[] = {
+            {"ROUTE", 4}, {"PROFILE", 2}, {"COMPONENT", 2}, {"META", 3}, {"IMPORT", 4}, {"EXPORT", 4}};
+        const auto found = std::ranges::find(statements, word, &std::pair<std::string_view, int>::first);
+        if (found == std::end(statements)) return false;
+        if (word == "IMPORT" || word == "EXPORT")
+            source_.line();
+        else
+            for (int k = 0; k < found->second; ++k) next();
         return true;
+    }
+
+    // category name factor
+    void read_unit() {
+        const std::string_view category = next();
+        next();
+        const double factor = source_.number(next());
+        if (!(factor > 0) || std::isinf(factor)) source_.broken_here("a unit of no size");
+        if (category == "length") draft_.unit = factor;
+        if (category == "angle") angle_ = factor;
     }
 
     void node() {
@@ -205,20 +302,21 @@ class Vrml {
     }
 
     void read_body(std::string_view type) {
-        constexpr std::string_view groups[] = {"Group",     "Transform", "Anchor", "Billboard",
-                                               "Collision", "Switch",    "LOD"};
-        constexpr std::string_view surfaces[] = {"Box",  "Sphere",    "Cylinder",
-                                                 "Cone", "Extrusion", "ElevationGrid"};
+        const bool is_geometry = std::exchange(in_geometry_, false);
         if (type == "Inline") source_.broken("an Inline, a part in another file,", "export it as one file");
-        if (const auto other = std::ranges::find(surfaces, type); other != std::end(surfaces))
-            others_.insert(*other);
-        if (type == "IndexedFaceSet") return read_faces();
-        if (std::ranges::count(groups, type) > 0) return read_group(type);
+        if (is_in(face_sets, type)) return read_faces(type);
+        if (type == "Box" || type == "Sphere" || type == "Cylinder" || type == "Cone")
+            return read_solid(type);
+        if (type == "ElevationGrid") return read_terrain();
+        if (type == "Extrusion") return read_extrusion();
+        if (is_in(groups, type) || is_in(transforms, type)) return read_group(type);
+        if (is_geometry) others_.insert(type);
+        const bool is_texture = type == "TextureCoordinate";
         read_fields([&](std::string_view field) {
             if (type == "Shape" && field == "geometry")
-                node();
-            else if (type == "Coordinate" && field == "point")
-                points_ = numbers();
+                in_geometry_ = true, node(), in_geometry_ = false;
+            else if (field == "point" && (is_texture || type == "Coordinate" || type == "CoordinateDouble"))
+                (is_texture ? uvs_ : points_) = numbers();
             else
                 return false;
             return true;
@@ -236,37 +334,205 @@ class Vrml {
         }
     }
 
-    void read_faces() {
-        Numbers points, indices;
+    void read_faces(std::string_view type) {
+        Numbers points, uvs, indices, uv_indices, counts;
         bool ccw = true;
         read_fields([&](std::string_view field) {
             if (field == "coord")
-                points_.clear(), node(), points = points_;
-            else if (field == "coordIndex")
+                points_.clear(), node(), points = std::move(points_);
+            else if (field == "texCoord")
+                uvs_.clear(), node(), uvs = std::move(uvs_);
+            else if (field == "coordIndex" || field == "index")
                 indices = numbers();
+            else if (field == "texCoordIndex")
+                uv_indices = numbers();
+            else if (field == "stripCount" || field == "fanCount")
+                counts = numbers();
             else if (field == "ccw")
-                ccw = next() != "FALSE";
+                ccw = truth();
             else
                 return false;
             return true;
         });
-        const Mark start = mark();
         if (points.size() % 3 != 0) source_.broken_here("a point of less than three numbers");
-        for (std::size_t i = 0; i < points.size(); i += 3)
-            draft_.positions.push_back({points[i], points[i + 1], points[i + 2]});
-        if (draft_.positions.size() > ~Index(0)) source_.broken("more than 2^32 points");
-        indices.push_back(-1);  // which ends a face, and may be left out after the last
-        for (Index size = 0; double index : indices) {
-            if (index != -1) {
-                if (!is_whole(index, 0, double(points.size() / 3) - 1))
-                    source_.broken_here(fmt::format("a face naming point {} of {}, counted from 0,", index,
-                                                    points.size() / 3));
-                draft_.corners.push_back(Index(double(start.positions) + index));
-                ++size;
-            } else if (size > 0) {
-                draft_.sizes.push_back(std::exchange(size, 0));
+        if (!type.starts_with("Indexed")) indices = in_order(points.size() / 3, counts);
+        if (type != "IndexedFaceSet") indices = as_faces(type, indices), uv_indices.clear();
+        const Mark start = mark();
+        add_faces(points, indices, uvs, uv_indices);
+        if (!ccw) turn_over(start);
+    }
+
+    // All points one after the other, in runs of so many.
+    Numbers in_order(std::size_t points, const Numbers& counts) const {
+        Numbers runs;
+        std::size_t run = 0, left = counts.empty() ? points : 0;
+        for (std::size_t i = 0; i < points; ++i, --left) {
+            for (; left == 0; ++run) {
+                if (run == counts.size()) return runs;
+                if (!is_whole(counts[run], 0, double(points)))
+                    source_.broken_here(fmt::format("a strip of {} points", counts[run]));
+                left = std::size_t(counts[run]);
+                if (!runs.empty()) runs.push_back(-1);
             }
+            runs.push_back(double(i));
         }
+        return runs;
+    }
+
+    // `uv_indices` stand beside `indices`; without them each point has one place in the texture.
+    void add_faces(const Numbers& points, Numbers indices, const Numbers& uvs, const Numbers& uv_indices) {
+        const std::size_t count = points.size() / 3, first = draft_.positions.size();
+        const bool by_corner = !uvs.empty() && !uv_indices.empty();
+        if (first + std::max(count, by_corner ? indices.size() : 0) > ~Index(0))
+            source_.broken("more than 2^32 points");
+        const auto point = [&](std::size_t i) {
+            return dvec3(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+        };
+        const auto uv = [&](double i) {
+            if (is_whole(i, 0, double(uvs.size() / 2) - 1))
+                return dvec2(uvs[2 * std::size_t(i)], uvs[2 * std::size_t(i) + 1]);
+            if (!uvs.empty()) ++astray_;
+            return dvec2(nothing);
+        };
+        if (!by_corner)
+            for (std::size_t i = 0; i < count; ++i)
+                draft_.positions.push_back(point(i)), draft_.uvs.push_back(uv(double(i)));
+        std::map<std::pair<double, double>, Index> known;  // a point and a place in the texture
+        indices.push_back(-1);  // which ends a face, and may be left out after the last
+        Index size = 0;
+        for (std::size_t i = 0; i < indices.size(); ++i) {
+            const double index = indices[i];
+            if (index == -1) {
+                if (size > 0) draft_.sizes.push_back(std::exchange(size, 0));
+                continue;
+            }
+            if (!is_whole(index, 0, double(count) - 1))
+                source_.broken_here(
+                    fmt::format("a face naming point {} of {}, counted from 0,", index, count));
+            Index vertex = Index(double(first) + index);
+            if (by_corner) {
+                const double place = i < uv_indices.size() && uv_indices[i] >= 0 ? uv_indices[i] : -1;
+                const auto [at, is_new] = known.try_emplace({index, place}, Index(draft_.positions.size()));
+                if (is_new)
+                    draft_.positions.push_back(point(std::size_t(index))), draft_.uvs.push_back(uv(place));
+                vertex = at->second;
+            }
+            draft_.corners.push_back(vertex);
+            ++size;
+        }
+    }
+
+    void read_solid(std::string_view type) {
+        dvec3 size(2);
+        double radius = 1;
+        Turned turned;
+        if (type == "Cone") turned.top_radius = 0;
+        read_fields([&](std::string_view field) {
+            if (field == "size")
+                size = vector();
+            else if (field == "radius" || field == "bottomRadius")
+                radius = just<1>()[0];
+            else if (field == "height")
+                turned.height = just<1>()[0];
+            else if (field == "side")
+                turned.side = truth();
+            else if (field == "bottom")
+                turned.bottom = truth();
+            else if (field == "top")
+                turned.top = truth();
+            else
+                return false;
+            return true;
+        });
+        build(1);
+        turned.bottom_radius = radius;
+        if (type == "Cylinder") turned.top_radius = radius;
+        if (type == "Box")
+            add_box(draft_, size);
+        else if (type == "Sphere")
+            add_sphere(draft_, radius);
+        else
+            add_turned(draft_, turned);
+        draft_.uvs.resize(draft_.positions.size(), dvec2(nothing));
+    }
+
+    // Counts what is more than its text.
+    void build(std::size_t solids) {
+        if (solids > may_build_) source_.broken("too many solids", "convert it to triangles");
+        may_build_ -= solids;
+    }
+
+    // The numbers of a field, as vectors of N.
+    template <class T>
+    std::vector<T> vectors() {
+        const Numbers found = numbers();
+        constexpr std::size_t each = sizeof(T) / sizeof(double);
+        std::vector<T> list(found.size() / each);
+        for (std::size_t i = 0; i < list.size(); ++i)
+            for (std::size_t k = 0; k < each; ++k) list[i][int(k)] = found[i * each + k];
+        return list;
+    }
+
+    void read_extrusion() {
+        Extruded shape{.section = {{1, 1}, {1, -1}, {-1, -1}, {-1, 1}, {1, 1}},
+                       .scales = {},
+                       .spine = {{0, 0, 0}, {0, 1, 0}},
+                       .turns = {}};
+        bool ccw = true;
+        read_fields([&](std::string_view field) {
+            if (field == "crossSection")
+                shape.section = vectors<dvec2>();
+            else if (field == "scale")
+                shape.scales = vectors<dvec2>();
+            else if (field == "spine")
+                shape.spine = vectors<dvec3>();
+            else if (field == "orientation")
+                for (shape.turns.clear(); glm::dvec4 r : vectors<glm::dvec4>())
+                    shape.turns.push_back(turn({r.x, r.y, r.z, angle_ * r.w}));
+            else if (field == "beginCap")
+                shape.begin_cap = truth();
+            else if (field == "endCap")
+                shape.end_cap = truth();
+            else if (field == "ccw")
+                ccw = truth();
+            else
+                return false;
+            return true;
+        });
+        build(1 + shape.section.size() * shape.spine.size() / 500);
+        const Mark start = mark();
+        add_extrusion(draft_, shape);
+        draft_.uvs.resize(draft_.positions.size(), dvec2(nothing));
+        if (!ccw) turn_over(start);
+    }
+
+    void read_terrain() {
+        Numbers heights;
+        double columns = 0, rows = 0, x_spacing = 1, z_spacing = 1;
+        bool ccw = true;
+        read_fields([&](std::string_view field) {
+            if (field == "height")
+                heights = numbers();
+            else if (field == "xDimension")
+                columns = just<1>()[0];
+            else if (field == "zDimension")
+                rows = just<1>()[0];
+            else if (field == "xSpacing")
+                x_spacing = just<1>()[0];
+            else if (field == "zSpacing")
+                z_spacing = just<1>()[0];
+            else if (field == "ccw")
+                ccw = truth();
+            else
+                return false;
+            return true;
+        });
+        const double most = double(heights.size());
+        if (!is_whole(columns, 0, most) || !is_whole(rows, 0, most) || columns * rows != most)
+            source_.broken_here(fmt::format("a grid of {} x {} with {} heights", columns, rows, most));
+        const Mark start = mark();
+        add_terrain(draft_, heights, std::size_t(columns), x_spacing, z_spacing);
+        draft_.uvs.resize(draft_.positions.size(), dvec2(nothing));
         if (!ccw) turn_over(start);
     }
 
@@ -276,17 +542,20 @@ class Vrml {
         std::vector<Mark> ends;  // of each child
         double choice = type == "LOD" ? 0 : -1;
         read_fields([&](std::string_view field) {
-            if (field == "children" || field == "choice" || field == "level") {
-                const bool list = take("[");
-                while (list ? !take("]") : ends.empty()) node(), ends.push_back(mark());
+            if (is_in(child_fields, field)) {
+                const auto child = [&] { node(), ends.push_back(mark()); };
+                if (take("["))
+                    while (!take("]")) child();
+                else
+                    child();
             } else if (field == "center") {
                 placement.center = vector();
             } else if (field == "rotation") {
-                placement.rotation = just<4>();
+                placement.rotation = rotation();
             } else if (field == "scale") {
                 placement.scale = vector();
             } else if (field == "scaleOrientation") {
-                placement.scale_orientation = just<4>();
+                placement.scale_orientation = rotation();
             } else if (field == "translation") {
                 placement.translation = vector();
             } else if (field == "whichChoice") {
@@ -296,7 +565,7 @@ class Vrml {
             }
             return true;
         });
-        if (type == "Transform") place(start, placement);
+        if (is_in(transforms, type)) place(start, placement);
         if (type != "Switch" && type != "LOD") return;
         const bool any = is_whole(choice, 0, double(ends.size()) - 1);
         const auto chosen = any ? std::size_t(choice) : 0;
@@ -314,6 +583,7 @@ class Vrml {
             list.erase(list.begin() + std::ptrdiff_t(first), list.begin() + std::ptrdiff_t(a));
         };
         cut(draft_.positions, from.positions, to.positions, start.positions);
+        cut(draft_.uvs, from.positions, to.positions, start.positions);  // as many
         cut(draft_.corners, from.corners, to.corners, start.corners);
         cut(draft_.sizes, from.sizes, to.sizes, start.sizes);
         for (std::size_t i = start.corners; i < draft_.corners.size(); ++i)
@@ -331,24 +601,29 @@ class Vrml {
     // Scaled along turned axes, turned, both about the centre, and moved.
     void place(Mark start, const Placement& by) {
         const dmat3 along = turn(by.scale_orientation);
-        const dmat3 scale(by.scale.x, 0, 0, 0, by.scale.y, 0, 0, 0, by.scale.z);
-        const dmat3 all = turn(by.rotation) * along * scale * glm::transpose(along);
+        const Place all{turn(by.rotation) * along * scale_by(by.scale) * glm::transpose(along),
+                        by.translation + by.center};
         for (std::size_t i = start.positions; i < draft_.positions.size(); ++i)
-            draft_.positions[i] = by.translation + by.center + all * (draft_.positions[i] - by.center);
-        if (glm::determinant(all) < 0) turn_over(start);
+            draft_.positions[i] = all.of(draft_.positions[i] - by.center);
+        if (all.mirrors()) turn_over(start);
     }
 
     Source source_;
-    std::size_t may_repeat_;
+    std::size_t may_repeat_, may_build_;
     int depth_ = 0;
     Draft draft_;
-    Numbers points_;                                                          // of the last Coordinate
+    double angle_ = 1;                                                        // rad, the unit of angles
+    bool in_geometry_ = false;                                                // of a Shape
+    std::size_t astray_ = 0;                                                  // corners without their texture
+    Numbers points_, uvs_;                                                    // of the last Coordinates
     std::map<std::string_view, std::map<std::size_t, std::size_t>> defined_;  // where nodes end and begin
-    std::set<std::string_view> others_;  // kinds of surfaces that are left out
+    std::set<std::string_view> others_;  // kinds of shapes that are left out
 };
 
 }  // namespace
 
-Draft read_vrml(Source source) { return Vrml(std::move(source)).read(); }
+Draft read_vrml(Source source) { return Vrml(std::move(source)).read(true); }
+
+Draft read_vrml_nodes(Source source) { return Vrml(std::move(source)).read(false); }
 
 }  // namespace palpate
