@@ -52,9 +52,18 @@ nlohmann::json described(const Timings& timings) {
     return {{"limits", limits}, {"cases", cases}, {"figures", figures}, {"driver", timings.driver}};
 }
 
+// By its name; where none is named, those that run by default.
+bool is_wanted(const Benchmark& benchmark, const BenchArguments& arguments) {
+    const auto& names = arguments.names;
+    return names.empty() ? benchmark.by_default : std::ranges::count(names, benchmark.name) > 0;
+}
+
 void run_benchmarks(const BenchArguments& arguments) {
-    for (const auto& file : {arguments.json, arguments.plot})
-        if (file.has_parent_path()) make_folder(file.parent_path());  // before the work, not after
+    check_output(arguments.json, ".json");  // before the work, not after
+    check_output(arguments.plot, ".svg");
+    const auto draws = [&](const Benchmark& one) { return one.curves && is_wanted(one, arguments); };
+    if (!arguments.plot.empty() && !std::ranges::any_of(benchmarks(), draws))
+        throw CLI::ValidationError("--plot", "name a benchmark that has curves: pipeline or touch");
     const unsigned cores = std::thread::hardware_concurrency();
     fmt::print(
         "Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
@@ -63,9 +72,7 @@ void run_benchmarks(const BenchArguments& arguments) {
     std::vector<Panel> panels;
     std::string title;
     for (const Benchmark& benchmark : benchmarks()) {
-        const auto& wanted = arguments.names;
-        const bool named = std::find(wanted.begin(), wanted.end(), benchmark.name) != wanted.end();
-        if (!named && !(wanted.empty() && benchmark.by_default)) continue;
+        if (!is_wanted(benchmark, arguments)) continue;
         const Timings timings = benchmark.run(arguments.rounds);
         fmt::print("\n### {}: {}\n\n{}", benchmark.name, benchmark.about, benchmark.text(timings));
         std::fflush(stdout);

@@ -55,6 +55,8 @@ void import_file(ImportArguments& arguments) {
         recipe.rotate = vec3(arguments.rotate[0], arguments.rotate[1], arguments.rotate[2]);
 
     check_mesh_name(arguments.out);
+    check_output(arguments.out);
+    check_output(arguments.report, ".json");
     const CleanSurface surface = make_surface(recipe, {}, terminal_progress());
     write_mesh(surface.mesh, arguments.out);
     end_progress();
@@ -75,34 +77,34 @@ void add_import(CLI::App& app) {
     CLI::App* command = app.add_subcommand("import", "Make a clean surface of a mesh or a volume");
     command->add_option("in", arguments->in, "a mesh, a volume, or a folder with a DICOM series")->required();
     command->add_option("-o,--out", arguments->out, "PLY, OBJ, STL, GLB or glTF, in metres")->required();
-    command->add_option(
-        "--iso", recipe.iso,
-        "value at a volume's surface, half-integer for integer volumes [as its values suggest]");
+    command
+        ->add_option("--iso", recipe.iso,
+                     "value at a volume's surface, half-integer for integer volumes [as its values suggest]")
+        ->check(number_that("a number", [](double) { return true; }));
     command->add_flag("--largest", recipe.largest, "keep only the largest connected part");
     command->add_option("--smooth", recipe.smooth, "passes of smoothing [10 for a volume, 0 for a mesh]")
-        ->check(CLI::Range(0, 1000));
-    command->add_option("--faces", recipe.faces, "simplify to about so many faces")
-        ->check(CLI::NonNegativeNumber);
+        ->check(from_to(0, 1000));
+    command->add_option("--faces", recipe.faces, "simplify to about so many faces")->check(zero_or_more());
     command->add_option("--units", arguments->units,
                         "of the file: m, cm, mm, um [what it states; else mm for a volume, m for a mesh]");
     command->add_option("--size", recipe.size, "m: instead, scale it so that its longest side is this")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     command
         ->add_option("--weld", recipe.repair.weld, "m: join vertices no farther apart [those in one place]")
-        ->check(CLI::NonNegativeNumber);
+        ->check(zero_or_more());
     command
         ->add_option("--specks", recipe.repair.specks,
                      "drop parts shorter than this fraction of the longest; 0 keeps all [0.01]")
-        ->check(CLI::Range(0.0, 0.999));
+        ->check(from_to(0, 0.999));
     command->add_flag("--sheet", recipe.sheet, "it is cloth: let it stay open");
     command->add_option(
         "--solid", arguments->solid,
         "how it becomes a solid: walls (mended; by voxels where that fails) or voxels [walls]");
     command->add_option("--voxel", recipe.repair.voxel, "m: of what voxels make [1/300 of its longest side]")
-        ->check(CLI::NonNegativeNumber);
+        ->check(zero_or_more());
     command->add_option("--report", arguments->report, "write what was done, JSON");
     command->add_option("--rotate", arguments->rotate, "degrees about x, y, z")
         ->expected(3)
-        ->check(CLI::Range(-360.0, 360.0));
+        ->check(from_to(-360, 360));
     command->callback([arguments] { import_file(*arguments); });
 }

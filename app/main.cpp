@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
     palpate::let_go_at_halt();
     palpate::on_halt(tidy);
     CLI::App app("Deforms detailed surfaces in real time and lets people feel them.", "palpate");
+    app.set_version_flag("--version", "palpate " PALPATE_VERSION);
     app.require_subcommand(1);
     add_run(app);
     add_import(app);

@@ -1,16 +1,20 @@
 #include "palpate/run/run.h"
 
+#include "app/choice.h"
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "app/view.h"
 #include "palpate/base/error.h"
 #include "palpate/run/experiment.h"
+#include "palpate/run/notes.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <thread>
 
 namespace {
 
@@ -27,11 +31,18 @@ struct RunArguments {
 
 // The size as "1280x720".
 void set_size(const std::string& text, RunSettings& settings) {
+    constexpr double most = 16384;
+    double width = 0, height = 0;
     int used = 0;
-    const int read = std::sscanf(text.c_str(), "%dx%d%n", &settings.width, &settings.height, &used);
-    const bool fits = read == 2 && std::size_t(used) == text.size() && settings.width > 0 &&
-                      settings.height > 0 && settings.width <= 16384 && settings.height <= 16384;
-    if (!fits) throw CLI::ValidationError("--size", "write WIDTHxHEIGHT, such as 1280x720");
+    const int read = std::sscanf(text.c_str(), "%lfx%lf%n", &width, &height, &used);
+    if (read != 2 || std::size_t(used) != text.size() || width != std::round(width) ||
+        height != std::round(height))
+        throw CLI::ValidationError("--size", "write WIDTHxHEIGHT, such as 1280x720");
+    if (!(width >= 1 && height >= 1 && width <= most && height <= most))
+        throw CLI::ValidationError("--size",
+                                   fmt::format("{} is not from 1 to {} pixels each way", text, most));
+    settings.width = int(width);
+    settings.height = int(height);
 }
 
 // The rule by its name; an option without a value has none.
@@ -90,6 +101,23 @@ bool wants_files(const RunArguments& arguments) {
     return s.frames || s.steps || arguments.rest;
 }
 
+// Options that were given and change nothing.
+std::vector<std::string> useless_options(const CLI::App& command, const Scene& scene,
+                                         const RunSettings& settings) {
+    std::vector<std::string> notes;
+    if (settings.video.empty() && settings.images.empty())
+        for (const char* option : {"--size", "--lattice"})
+            if (command.count(option) > 0)
+                notes.push_back(fmt::format("{} changes nothing without --video or --images", option));
+    if (command.count("--force") > 0 && !(scene.simulation.step > 0))
+        notes.push_back("--force changes nothing where the step is chosen automatically");
+    const unsigned cores = std::thread::hardware_concurrency();
+    if (cores > 0 && scene.simulation.threads > int(cores))
+        notes.push_back(fmt::format("{} threads on {} cores are no faster than {}", scene.simulation.threads,
+                                    cores, cores));
+    return notes;
+}
+
 // What a recording did, done again; says whether it came out the same.
 void replay(const std::string& file) {
     const Recording recording = read_recording(file);
@@ -106,7 +134,7 @@ void replay(const std::string& file) {
                     "replay it on the same backend, with the same files and the same version");
 }
 
-void run_scene(RunArguments& arguments) {
+void run_scene(RunArguments& arguments, const CLI::App& command) {
     if (!arguments.backend.empty())
         arguments.changes.push_back("simulation.backend=\"" + arguments.backend + "\"");
     if (arguments.threads > 0)
@@ -126,14 +154,15 @@ void run_scene(RunArguments& arguments) {
     Scene scene = read_scene(arguments.scene, arguments.changes);
     scene.simulation.force = arguments.force;
 
-    const Report report = run(scene, arguments.settings, terminal_progress());
+    Report report = run(scene, arguments.settings, terminal_progress());
     end_progress();
+    for (std::string& note : useless_options(command, scene, arguments.settings))
+        report.notes.push_back(std::move(note));
     print_summary(report);
     if (report.diverged)
         throw Error(fmt::format("the motion blew up after {:.3f} s", report.simulated), arguments.scene,
-                    scene.simulation.step > 0
-                        ? "use step = \"auto\"; what was good until then is kept"
-                        : "use a stiffer body, or press it less hard; what was good is kept");
+                    (scene.simulation.step > 0 ? "use step = \"auto\"" : how_to_ask_less(scene, report)) +
+                        "; what was good until then is kept");
 }
 
 }  // namespace
@@ -156,7 +185,7 @@ void add_run(CLI::App& app) {
     auto* frames = command->add_option("--frames", settings.frames, "stop after so many frames of 1/60 s");
     auto* steps = command->add_option("--steps", settings.steps, "stop after so many steps of the solver")
                       ->excludes(frames);
-    frames->check(CLI::Range(0, 100'000'000));
+    for (auto* count : {frames, steps}) count->check(from_to(0, 1e8));
     command->add_option("--until-rest", arguments->rest, "end at rest, by the rule speed (no value) or move")
         ->expected(0, 1)
         ->excludes(frames)
@@ -164,23 +193,26 @@ void add_run(CLI::App& app) {
     command->add_option("--size", arguments->size, "of the window or the pictures, in pixels")
         ->capture_default_str();
     command->add_option("--video", settings.video, "write a film, MP4 (needs ffmpeg)");
-    command->add_option("--images", settings.images, "write PNG pictures into this folder");
+    auto* images = command->add_option("--images", settings.images,
+                                       "write PNG pictures into this folder, which is made if it is missing");
     command->add_option("--image-every", settings.image_every, "s between those pictures")
-        ->check(CLI::PositiveNumber)
+        ->needs(images)
+        ->check(above_zero())
         ->capture_default_str();
     command->add_option("--report", settings.report, "write figures, JSON");
     command->add_option("--plot", settings.plot, "write force and indentation over time, SVG");
     command->add_option("--nodes", settings.nodes, "write the final nodes, CSV");
     command->add_option("--surface", settings.surface,
                         "write the final surface: .ply, .obj, .stl, .vtp, .glb or .gltf");
-    command->add_option(
+    auto* sequence = command->add_option(
         "--sequence", settings.sequence,
         "write the surface as it moves: numbered .ply, .obj, .stl or .vtp, or one .pc2, .mdd or .glb");
     command->add_option("--sequence-every", settings.sequence_every, "s between those [1/30]")
-        ->check(CLI::PositiveNumber);
+        ->needs(sequence)
+        ->check(above_zero());
     command->add_flag("--lattice", settings.lattice, "draw the springs over the surface");
     command->add_option("--set", arguments->changes, "change the scene, as in body.brain.nodes=5000")
         ->allow_extra_args(false);
     command->add_flag("--force", arguments->force, "accept a step above the stability bound");
-    command->callback([arguments] { run_scene(*arguments); });
+    command->callback([arguments, command] { run_scene(*arguments, *command); });
 }

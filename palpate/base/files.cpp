@@ -4,8 +4,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -79,18 +81,27 @@ bool flushed(std::FILE* file) {
     return !std::ferror(file) && std::fflush(file) == 0 && (fsync(fileno(file)) == 0 || errno == EINVAL);
 }
 
+// What a name leads to: a link stays a link, and what it leads to is written.
+std::filesystem::path destination(const std::filesystem::path& name) {
+    std::error_code error, ignored;
+    if (!std::filesystem::is_symlink(name, ignored)) return name;
+    const std::filesystem::path path = std::filesystem::canonical(name, error);
+    if (error) throw Error("a link that leads nowhere", name.string(), "remove it, or name another file");
+    return path;
+}
+
+// A pipe or a device, which is written to and never replaced.
+bool is_special(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored) &&
+           !std::filesystem::is_directory(path, ignored);
+}
+
 }  // namespace
 
 void write_file(const std::filesystem::path& name, const std::function<void(std::FILE*)>& write) {
-    std::filesystem::path path = name;
-    std::error_code error, ignored;
-    // A link stays a link: what it leads to is written.
-    if (std::filesystem::is_symlink(name, ignored)) path = std::filesystem::canonical(name, error);
-    if (error) throw Error("a link that leads nowhere", name.string(), "remove it, or name another file");
-    const bool special = std::filesystem::exists(path, ignored) &&
-                         !std::filesystem::is_regular_file(path, error) &&
-                         !std::filesystem::is_directory(path, ignored);
-    if (special) {  // a pipe or a device is written to, never replaced
+    const std::filesystem::path path = destination(name);
+    if (is_special(path)) {
         std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "wb"));
         if (!file) fail("cannot write", path, "check that it may be written to");
         write(file.get());
@@ -108,6 +119,32 @@ void write_file(const std::filesystem::path& name, const std::function<void(std:
 
 void write_text(const std::filesystem::path& path, std::string_view text) {
     write_file(path, [&](std::FILE* file) { std::fwrite(text.data(), 1, text.size(), file); });
+}
+
+void check_output(const std::filesystem::path& name, std::string_view ending) {
+    if (name.empty()) return;
+    std::error_code error;
+    if (std::filesystem::is_directory(name, error))
+        throw Error("a folder where a file is to be written", name.string(), "name a file");
+    const std::filesystem::path path = destination(name);
+    if (is_special(path)) return;
+    const std::string has = name.extension().string();
+    auto alike = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+    if (!ending.empty() && !has.empty() && !std::ranges::equal(has, ending, alike))
+        throw Error("cannot write \"" + has + "\"", name.string(),
+                    "name it " + std::filesystem::path(name).replace_extension(ending).string() +
+                        ", which is what it will be");
+    check_folder(path.parent_path(), path.filename().string());
+    const Unfinished trial(path);  // gone again at once
+    if (std::unique_ptr<std::FILE, Close> file(std::fopen(trial.name().c_str(), "wb")); !file)
+        fail("cannot write", path, "check that its folder may be written to, or name another");
+}
+
+void check_folder(const std::filesystem::path& folder, std::string_view wanted_for) {
+    std::error_code error;
+    if (folder.empty() || std::filesystem::is_directory(folder, error)) return;
+    throw Error(std::string("no folder for ") + std::string(wanted_for), folder.string(),
+                "make it first, or name one that is there");
 }
 
 void make_folder(const std::filesystem::path& folder) {

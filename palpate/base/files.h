@@ -42,6 +42,15 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
 /// write_file for a text that is ready.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
+/// Says before the work what could not be written after it: throws Error if the file's folder is missing or
+/// closed to us, if a folder has its name, or if its name ends otherwise than `ending` (".svg"), which is
+/// what it will hold. A name without an ending is taken, and a device or a pipe may have any.
+void check_output(const std::filesystem::path& path, std::string_view ending = {});
+
+/// Throws Error if there is no such folder; an empty path is the current one. `wanted_for`: what is to be in
+/// it, for the message.
+void check_folder(const std::filesystem::path& folder, std::string_view wanted_for);
+
 /// Creates a folder and its parents where they are missing. Throws Error if it cannot.
 void make_folder(const std::filesystem::path& folder);
 

@@ -12,9 +12,6 @@ namespace {
 
 // H.264 halves the colour's resolution, which wants even sides: an odd last row or column is cropped.
 std::vector<std::string> command(const std::filesystem::path& path, int width, int height, int rate) {
-    if (!has_program("ffmpeg"))
-        throw Error("cannot write a film without the program ffmpeg", path.string(),
-                    "install ffmpeg, or ask for --images instead");
     // -xerror: without it, ffmpeg ends in peace after a disk was full.
     std::istringstream text(
         fmt::format("ffmpeg -v error -xerror -y "
@@ -30,8 +27,24 @@ std::vector<std::string> command(const std::filesystem::path& path, int width, i
 
 }  // namespace
 
+void check_film(const std::filesystem::path& path) {
+    check_output(path, ".mp4");
+    if (!has_program("ffmpeg"))
+        throw Error("cannot write a film without the program ffmpeg", path.string(),
+                    "install ffmpeg, or ask for --images instead");
+}
+
+namespace {
+
+const std::filesystem::path& checked(const std::filesystem::path& path) {
+    check_film(path);
+    return path;
+}
+
+}  // namespace
+
 Film::Film(const std::filesystem::path& path, int width, int height, int frames_per_second)
-    : file_(path), ffmpeg_(command(file_.name(), width, height, frames_per_second)) {}
+    : file_(checked(path)), ffmpeg_(command(file_.name(), width, height, frames_per_second)) {}
 
 void Film::add(const Image& image) { ffmpeg_.write(image.pixels.data(), image.pixels.size()); }
 

@@ -94,12 +94,6 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
         solvers_.push_back(
             make_solver(model.body, simulation, context, m < frequencies.size() ? frequencies[m] : 0));
         report.bodies.push_back(describe(model));
-        for (const ToolRecipe& tool : scene.tools)
-            if (tool.kind == ToolKind::press && tool.radius < 0.7f * model.body.spacing)
-                report.notes.push_back(
-                    fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
-                                "between the nodes; use more nodes",
-                                tool.name, model.body.name));
     }
     const std::vector<Feel> feels = feels_of(scene);
     for (const Still& still : made.stills) {
@@ -216,16 +210,20 @@ std::vector<Dent> Play::dents(std::size_t skin) const {
 // The probes feel the surfaces as they are at `time`, and guess how they go on.
 void Play::probe(double time, double seconds) {
     if (!probes_) return;
+    skins();  // which have their own time
+    Timed timed(report_.seconds.simulate);
+    const double since = time - before_time_;
     for (std::size_t m = 0; m < made_.models.size(); ++m) {
-        const std::vector<vec3>& now = skins()[m].positions;
-        if (!before_.empty()) {
+        const std::vector<vec3>& now = skins_[m].positions;
+        if (!before_.empty() && since > 0) {
             velocities_[m].resize(now.size());
             for (std::size_t i = 0; i < now.size(); ++i)
-                velocities_[m][i] = (now[i] - before_[m][i]) / float(frame_seconds);
+                velocities_[m][i] = (now[i] - before_[m][i]) / float(since);
         }
     }
     before_.resize(made_.models.size());
     for (std::size_t m = 0; m < made_.models.size(); ++m) before_[m] = skins_[m].positions;
+    before_time_ = time;
     for (auto& handle : handles_)
         if (auto* one = std::get_if<Probe>(&handle); one && one->is_there(time))
             one->advance(time, seconds, skins_, velocities_, !made_.models.empty());

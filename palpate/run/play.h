@@ -116,6 +116,7 @@ class Play {
     double time_ = 0;                            // s
     bool probes_ = false;                        // whether any tool is one
     std::vector<std::vector<vec3>> before_;      // where the skins were a frame ago, for those
+    double before_time_ = 0;                     // s, and when that was
     std::vector<std::vector<vec3>> velocities_;  // m/s, since then
 };
 

@@ -25,6 +25,8 @@ double largest(const std::vector<T>& list, double T::*member) {
     return most;
 }
 
+Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
 double shortest_step(const Report& report) {
     double step = 0;
     for (const Report::Body& body : report.bodies)
@@ -62,9 +64,11 @@ Json to_json(const Report::Tool& tool) {
 
 }  // namespace
 
-double Report::frames_per_second() const {
+std::optional<double> Report::frames_per_second() const {
     const double busy = seconds.simulate + seconds.map + seconds.render;
-    return busy > 0 ? frames / busy : 0;
+    const bool moves = std::ranges::any_of(bodies, [](const Body& body) { return body.nodes > 0; });
+    if (frames == 0 || !(busy > 0) || (!moves && tools.empty() && pictures == 0)) return std::nullopt;
+    return frames / busy;
 }
 
 void write_report(const Report& report, const std::filesystem::path& path) {
@@ -91,7 +95,7 @@ void write_report(const Report& report, const std::filesystem::path& path) {
                    {"render", report.seconds.render},
                    {"write", report.seconds.write},
                    {"total", report.seconds.total}}},
-                 {"frames_per_second", report.frames_per_second()},
+                 {"frames_per_second", or_null(report.frames_per_second())},
                  {"kinetic_energy_j", sum(report.bodies, &Body::kinetic_energy)},
                  {"elastic_energy_j", sum(report.bodies, &Body::elastic_energy)},
                  {"largest_speed_m_s", largest(report.bodies, &Body::largest_speed)},
@@ -99,7 +103,7 @@ void write_report(const Report& report, const std::filesystem::path& path) {
                  {"largest_force_n", largest(report.tools, &Tool::largest_force)},
                  {"diverged", report.diverged},
                  {"at_rest", report.rest.has_value()},
-                 {"rest_s", report.rest ? Json(*report.rest) : Json(nullptr)},
+                 {"rest_s", or_null(report.rest)},
                  {"notes", report.notes},
                  {"bodies", Json::array()},
                  {"tools", Json::array()}};

@@ -40,7 +40,7 @@ struct Report {
 
     std::string scene, backend, integrator, renderer;
     int threads = 1;
-    int frames = 0;              // of 1/60 s
+    int frames = 0;              // of 1/60 s, but see RunSettings::steps
     int pictures = 0;            // drawn
     double simulated = 0;        // s
     Seconds seconds;             // s, of work
@@ -50,8 +50,9 @@ struct Report {
     std::vector<Tool> tools;
     std::vector<std::string> notes;
 
-    /// Frames that the computer does in a second of simulating and mapping, and drawing where it drew.
-    double frames_per_second() const;
+    /// Frames that the computer does in a second of simulating and mapping, and drawing where it drew;
+    /// nothing where nothing moved, was felt or was drawn.
+    std::optional<double> frames_per_second() const;
 };
 
 /// Writes a report as JSON. Throws Error if it cannot.

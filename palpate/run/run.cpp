@@ -6,6 +6,8 @@
 #include "palpate/gl/context.h"
 #include "palpate/mesh/sequence.h"
 #include "palpate/mesh/write.h"
+#include "palpate/run/film.h"
+#include "palpate/run/notes.h"
 #include "palpate/run/play.h"
 #include "palpate/run/plot.h"
 #include "palpate/run/show.h"
@@ -17,6 +19,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 
 namespace palpate {
 namespace {
@@ -52,37 +55,70 @@ void write_surfaces(const Models& made, const std::vector<Skin>& skins, const st
 
 // ---- what is written on the way ----
 
+// Of numbered files with these beginning and end, those that are not ours: an earlier run left them. Nothing
+// is removed that somebody may want to keep.
+void look_for_older(const std::filesystem::path& folder, const std::string& begin, const std::string& end,
+                    const std::set<std::string>& ours, std::vector<std::string>& notes) {
+    std::size_t count = 0;
+    std::string one;
+    std::error_code error;
+    for (const auto& file : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
+        const std::string name = file.path().filename().string();
+        if (!name.starts_with(begin) || !name.ends_with(end) || name.size() <= begin.size() + end.size())
+            continue;
+        const std::string number = name.substr(begin.size(), name.size() - begin.size() - end.size());
+        if (number.size() < 4 || number.find_first_not_of("0123456789.") != number.npos) continue;
+        if (ours.contains(name)) continue;
+        if (++count == 1 || name < one) one = name;
+    }
+    if (count > 0)
+        notes.push_back(fmt::format("{} older file{} of an earlier run stay{} in {}, such as {}", count,
+                                    count == 1 ? "" : "s", count == 1 ? "s" : "",
+                                    folder.empty() ? "this folder" : folder.string(), one));
+}
+
 // The surfaces as they move, each in a sequence of its own.
 class MeshSequences {
  public:
     MeshSequences(const RunSettings& settings, const Models& made, const Play& play, double duration) {
         if (settings.sequence.empty()) return;
-        if (made.models.empty())
-            throw Error("no body whose motion could be recorded", settings.sequence.string(),
-                        "use --surface, or a scene with a [[body]]");
-        frames_apart_ = int(std::lround(std::clamp(settings.sequence_every / frame_seconds, 1.0, 1e9)));
+        const double frames_apart = std::round(std::clamp(settings.sequence_every / frame_seconds, 1.0, 1e9));
+        apart_ = frames_apart * frame_seconds;
         const auto frames = std::size_t(std::ceil(duration / frame_seconds - 1e-6));
         for (std::size_t m = 0; m < made.models.size(); ++m) {
             const Mesh& rest = made.models[m].surface;
+            paths_.push_back(file_of(m, made, settings.sequence));
             sequences_.push_back(make_sequence({rest.positions, play.skins()[m].normals, rest.triangles},
-                                               file_of(m, made, settings.sequence),
-                                               frames / std::size_t(frames_apart_) + 1));
+                                               paths_.back(), frames / std::size_t(frames_apart) + 1));
         }
     }
 
-    // Frame 0 is the state before the first step.
-    void frame_done(int number, double time, const Play& play) {
-        if (number % frames_apart_ != 0) return;
+    // The first is the state before the first step.
+    void frame_done(double time, const Play& play) {
+        if (time < next_ - 1e-9) return;
+        next_ += apart_;
+        ++pictures_;
         for (std::size_t m = 0; m < sequences_.size(); ++m)
             sequences_[m]->add(time, play.skins()[m].positions, play.skins()[m].normals);
     }
 
-    void finish() {
+    void finish(std::vector<std::string>& notes) {
         for (const auto& sequence : sequences_) sequence->finish();
+        for (const std::filesystem::path& path : paths_) {
+            std::set<std::string> ours;
+            for (std::size_t i = 1; i <= pictures_; ++i)
+                for (int digits = 4; digits < 10; ++digits)
+                    ours.insert(fmt::format("{}-{:0{}}{}", path.stem().string(), i, digits,
+                                            path.extension().string()));
+            look_for_older(path.parent_path(), path.stem().string() + "-", path.extension().string(), ours,
+                           notes);
+        }
     }
 
  private:
-    int frames_apart_ = 1;
+    double apart_ = 0, next_ = 0;  // s
+    std::size_t pictures_ = 0;
+    std::vector<std::filesystem::path> paths_;
     std::vector<std::unique_ptr<Sequence>> sequences_;
 };
 
@@ -146,22 +182,69 @@ class RestWatch {
     std::vector<float> spacings_;
 };
 
-double longest(const Scene& scene, const RunSettings& settings, const Play& play) {
-    if (settings.steps) return frame_seconds * double(*settings.steps) / play.steps_per_frame();
-    if (settings.frames) return frame_seconds * *settings.frames;
-    return settings.until_rest == Rest::none ? scene.duration : 10 * scene.duration;
+// How long a run may last, and how far it goes on at a time.
+struct Pace {
+    double duration, frame;  // s
+    double step = 0;         // s, of which both hold whole ones; 0: it does not matter
+
+    double next(double time) const {
+        const double left = duration - time;
+        return std::min(frame, step > 0 ? std::round(left / step) * step : left);
+    }
+};
+Pace pace_of(const Scene& scene, const RunSettings& settings, const Play& play) {
+    const double step = scene.simulation.step;
+    if (settings.steps && step > 0)
+        return {double(*settings.steps) * step, std::max(1.0, std::floor(frame_seconds / step + 1e-6)) * step,
+                step};
+    if (settings.steps)
+        return {frame_seconds * double(*settings.steps) / play.steps_per_frame(), frame_seconds};
+    if (settings.frames) return {frame_seconds * *settings.frames, frame_seconds};
+    return {settings.until_rest == Rest::none ? scene.duration : 10 * scene.duration, frame_seconds};
+}
+
+void check_numbers(const RunSettings& settings) {
+    auto refuse = [](bool holds, const char* what, const char* remedy) {
+        if (!holds) throw Error(what, "the settings of the run", remedy);
+    };
+    refuse(settings.frames.value_or(0) >= 0 && settings.steps.value_or(0) >= 0,
+           "a negative number of frames or steps", "use 0 or more");
+    refuse(settings.image_every > 0 && std::isfinite(settings.image_every), "no time between pictures",
+           "give seconds above zero");
+    refuse(settings.sequence_every >= 0 && std::isfinite(settings.sequence_every),
+           "no time between the pictures of a sequence", "give seconds");
 }
 
 // Says before the work what could not be written after it.
-void check_outputs(const RunSettings& settings) {
-    for (const auto* file : {&settings.video, &settings.report, &settings.plot, &settings.nodes,
-                             &settings.surface, &settings.sequence}) {
-        if (file->has_parent_path()) make_folder(file->parent_path());
-        if (std::error_code error; std::filesystem::is_directory(*file, error))
-            throw Error("a folder where a file is to be written", file->string(), "name a file");
+void check_outputs(const Scene& scene, const RunSettings& settings) {
+    check_numbers(settings);
+    if (!settings.plot.empty() && scene.tools.empty())
+        throw Error("no tool whose force could be plotted", settings.plot.string(),
+                    "use a scene with a [[tool]], or write no plot");
+    for (const auto* file : {&settings.nodes, &settings.sequence})
+        if (!file->empty() && scene.bodies.empty())
+            throw Error("no body that moves, whose nodes could be written", file->string(),
+                        "use a scene with a [[body]], or write its --surface");
+    if (!settings.images.empty()) {
+        check_folder(std::filesystem::absolute(settings.images / ".").parent_path().parent_path(),
+                     settings.images.string());
+        make_folder(settings.images);
     }
+    if (!settings.video.empty()) check_film(settings.video);
+    check_output(settings.report, ".json");
+    check_output(settings.plot, ".svg");
+    check_output(settings.nodes, ".csv");
+    check_output(settings.surface);
+    check_output(settings.sequence);
     if (!settings.surface.empty()) check_mesh_name(settings.surface);
     if (!settings.sequence.empty()) check_sequence_name(settings.sequence);
+    const std::string kind = settings.sequence.extension().string();
+    const bool with_rest = kind == ".pc2" || kind == ".mdd";  // in a file of its own
+    if (!settings.surface.empty() && (with_rest || kind == ".glb") &&
+        settings.surface ==
+            std::filesystem::path(settings.sequence).replace_extension(with_rest ? ".obj" : kind))
+        throw Error("the sequence writes a file of this name too", settings.surface.string(),
+                    "name one of them differently");
 }
 
 }  // namespace
@@ -173,10 +256,12 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     report.backend = name_of(scene.simulation.backend);
     report.integrator = name_of(scene.simulation.integrator);
     report.threads = scene.simulation.threads;
-    check_outputs(settings);
+    check_outputs(scene, settings);
 
     const Models made = build(scene, progress);
     report.notes = made.notes;
+    for (std::string& note : notes_before(scene, made)) report.notes.push_back(std::move(note));
+    const auto known_before = std::ptrdiff_t(report.notes.size());
     std::optional<gl::Context> context;  // in which a GPU moves the bodies, and pictures are drawn
     if (on_gpu(made.simulation.backend)) report.renderer = context.emplace().renderer();
     const gl::Context* const shared = context ? &*context : nullptr;
@@ -186,19 +271,19 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         show = std::make_unique<Show>(scene, made, settings, shared);
         report.renderer = show->renderer();
     }
-    const double duration = longest(scene, settings, play);
-    MeshSequences sequences(settings, made, play, duration);
+    const Pace pace = pace_of(scene, settings, play);
+    MeshSequences sequences(settings, made, play, pace.duration);
     report.seconds.build = now() - start;
 
     RestWatch watch(settings.until_rest, scene, made);
     auto draw = [&] {
-        if (show) report.pictures += show->frame_done(report.frames, play, report.seconds);
+        if (show) report.pictures += show->frame_done(report.simulated, play, report.seconds);
         Timed timed(report.seconds.write);
-        sequences.frame_done(report.frames, report.simulated, play);
+        sequences.frame_done(report.simulated, play);
     };
     draw();
-    while (report.simulated < duration - 1e-9 && !report.rest) {
-        const double span = std::min(frame_seconds, duration - report.simulated);
+    while (report.simulated < pace.duration - 1e-9 && !report.rest) {
+        const double span = pace.next(report.simulated);
         if (!play.advance(report.simulated, span)) {
             report.diverged = true;
             break;
@@ -207,18 +292,16 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         ++report.frames;
         if (watch.at_rest(report.simulated, span, play)) report.rest = report.simulated;
         draw();
-        if (progress) progress("running " + scene.name, report.simulated / duration);
+        if (progress) progress("running " + scene.name, report.simulated / pace.duration);
     }
     if (settings.until_rest != Rest::none && !report.rest && !report.diverged)
         report.notes.push_back(fmt::format("not at rest after {:.4g} s", report.simulated));
     if (show) show->finish();
-    sequences.finish();
-
-    for (const Report::Body& body : report.bodies)
-        if (body.inverted_cells > 0)
-            report.notes.push_back(fmt::format(
-                "body {}: up to {} of {} cells were inside out; press less hard, or use more nodes",
-                body.name, body.inverted_cells, body.cells));
+    if (show && !settings.images.empty())
+        look_for_older(settings.images, scene.name + "-", "s.png", show->written(), report.notes);
+    sequences.finish(report.notes);
+    const std::vector<std::string> after = notes_after(scene, made, report, play);
+    report.notes.insert(report.notes.begin() + known_before, after.begin(), after.end());
 
     const std::vector<State> states = play.states();
     for (std::size_t m = 0; m < states.size(); ++m) {

@@ -23,18 +23,21 @@ inline std::span<const Named<Rest>> names(Rest) {
     return all;
 }
 
-/// What a run shall last and leave behind. A path that is empty is not written; folders are made where they
-/// are missing.
+/// What a run shall last and leave behind. A path that is empty is not written. No folder is made but the one
+/// for pictures, in one that is there.
 struct RunSettings {
     // One of these, or the scene's own duration.
     std::optional<int> frames;  // of 1/60 s
-    std::optional<long> steps;  // of the solver
+    /// Of the solver: of exactly the scene's step where it gives one, and then a frame is as many of them as
+    /// fit into 1/60 s, at least one.
+    std::optional<long> steps;
     /// Ends the run as soon as everything is at rest and every path has come to its end; without a number
     /// above, after ten times the scene's duration at the latest.
     Rest until_rest = Rest::none;
 
-    std::filesystem::path video;     // MP4, 30 pictures a second
-    std::filesystem::path images;    // a folder of PNG pictures
+    std::filesystem::path video;  // MP4, 30 pictures a second
+    std::filesystem::path
+        images;  // a folder of PNG pictures, NAME-01.50s.png; older ones stay, and a note says so
     std::filesystem::path report;    // JSON
     std::filesystem::path plot;      // SVG: contact force and indentation over time
     std::filesystem::path nodes;     // CSV of the final state: body,id,x,y,z,vx,vy,vz
@@ -49,7 +52,8 @@ struct RunSettings {
 
 /// Runs a scene from its recipes to its files: build, then for each 1/60 s simulate, map, and draw if
 /// anything wants pictures. A run that diverges stops there: what was good is kept and written, and the
-/// report says so. Throws Error if the scene cannot be built or a file cannot be written.
+/// report says so. Throws Error if the scene cannot be built, if a file cannot be written or would be named
+/// for what it is not, or if it would hold nothing: a plot without a tool.
 Report run(const Scene& scene, const RunSettings& settings, const Progress& progress = {});
 
 }  // namespace palpate

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr int frames_per_picture = 2;  // of a film: 30 pictures a second
+constexpr int pictures_per_second = 30;  // of a film
 
 }  // namespace
 
@@ -20,16 +20,13 @@ Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, 
       scenery_(scene, made, renderer_),
       camera_(camera_of(scene, made)) {
     if (!settings.video.empty())
-        film_ =
-            std::make_unique<Film>(settings.video, settings.width, settings.height, 60 / frames_per_picture);
-    if (!settings.images.empty()) make_folder(settings.images);
+        film_ = std::make_unique<Film>(settings.video, settings.width, settings.height, pictures_per_second);
 }
 
 const std::string& Show::renderer() const { return renderer_.context().renderer(); }
 
-bool Show::frame_done(int number, const Play& play, Report::Seconds& seconds) {
-    const double time = number * frame_seconds;
-    const bool film_wants = film_ && number % frames_per_picture == 0;
+bool Show::frame_done(double time, const Play& play, Report::Seconds& seconds) {
+    const bool film_wants = film_ && time >= next_in_film_ - 1e-9;
     const bool images_want = !settings_.images.empty() && time >= next_image_ - 1e-9;
     if (!film_wants && !images_want) return false;
     Image image;
@@ -39,9 +36,12 @@ bool Show::frame_done(int number, const Play& play, Report::Seconds& seconds) {
         image = renderer_.image();
     }
     Timed timed(seconds.write);
-    if (film_wants) film_->add(image);
+    for (; film_wants && time >= next_in_film_ - 1e-9; next_in_film_ += 1.0 / pictures_per_second)
+        film_->add(image);  // several times, where frames are longer than that
     if (images_want) {
-        write_png(image, settings_.images / fmt::format("{}-{:05.2f}s.png", name_, time));
+        const std::string name = fmt::format("{}-{:05.2f}s.png", name_, time);
+        write_png(image, settings_.images / name);
+        written_.insert(name);
         next_image_ += settings_.image_every;
     }
     return true;

@@ -6,6 +6,7 @@
 #include "palpate/run/scenery.h"
 
 #include <memory>
+#include <set>
 #include <string>
 
 namespace palpate {
@@ -20,12 +21,15 @@ class Show {
     /// The OpenGL driver.
     const std::string& renderer() const;
 
-    /// Frame 0 is the state before the first step. Returns whether it drew; the time goes to what it took it
-    /// for.
-    bool frame_done(int number, const Play& play, Report::Seconds& seconds);
+    /// At time 0 it is the state before the first step. Returns whether it drew; the seconds go to what took
+    /// them.
+    bool frame_done(double time, const Play& play, Report::Seconds& seconds);
 
     /// After the last frame.
     void finish();
+
+    /// Names of the pictures in the folder.
+    const std::set<std::string>& written() const { return written_; }
 
  private:
     const std::string name_;
@@ -34,7 +38,8 @@ class Show {
     Scenery scenery_;
     const Camera camera_;
     std::unique_ptr<Film> film_;
-    double next_image_ = 0;
+    double next_image_ = 0, next_in_film_ = 0;  // s
+    std::set<std::string> written_;
 };
 
 }  // namespace palpate

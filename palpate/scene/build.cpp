@@ -10,6 +10,7 @@
 #include "palpate/mesh/relief.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/scene/surface.h"
+#include "palpate/scene/thin_walls.h"
 
 #include <fmt/format.h>
 
@@ -47,6 +48,12 @@ std::vector<int> chosen(const Body& body, const Choice& choice, vec3 down, const
     };
     if (choice.below) add("below", nodes_below(body, *choice.below, down));
     if (choice.near) add("near", nodes_near(body, *choice.near, choice.radius));
+    if (choice.near && choice.radius == 0 && !all.empty()) {
+        const float far = glm::distance(*choice.near, body.positions[std::size_t(all.back())]);
+        if (far > glm::length(bounds_of(body.positions).size()))
+            notes.push_back(
+                fmt::format("{}: {}near is {:.3g} m from the nearest node; is it in m?", where, key, far));
+    }
     if (!choice.box.empty()) add("box", nodes_in(body, bounds_of(choice.box)));
     for (int node : choice.nodes)
         if (node < 0 || node >= int(body.count()))
@@ -98,7 +105,11 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
 
 void hold(Body& body, const BodyRecipe& recipe, const Scene& scene, std::vector<std::string>& notes) {
     strengthen_regions(body, recipe, scene, notes);
-    pin(body, chosen(body, recipe.pin, down(scene), "body " + recipe.name, "pin.", notes));
+    const std::vector<int> held = chosen(body, recipe.pin, down(scene), "body " + recipe.name, "pin.", notes);
+    if (held.size() == body.count())
+        notes.push_back(fmt::format("body {}: pin holds all its {} nodes, so it will not move; pin fewer",
+                                    recipe.name, held.size()));
+    pin(body, held);
 }
 
 // ---- bodies ----
@@ -109,6 +120,9 @@ void add_notes(const BodyRecipe& recipe, const Model& model, double solid, std::
         notes.push_back(fmt::format("body {}: {}", recipe.name, what));
     };
     const Body& body = model.body;
+    if (recipe.dims || recipe.cloth)  // of a file's surface it is said already
+        if (const std::string warning = size_warning({body.positions, {}, {}}); !warning.empty())
+            note(warning);
     if (model.surface.triangles.empty()) {
         note(recipe.cloth ? "one node wide, so it has no surface to draw"
                           : "one node thick, so it has no surface to draw or to hang on it");
@@ -208,8 +222,6 @@ BodyRecipe without_looks(BodyRecipe recipe) {
     recipe.shine = plain.shine;
     recipe.shade = plain.shade;
     recipe.feel = plain.feel;
-    recipe.line = plain.line;
-    for (Region& region : recipe.regions) region.line = 0;
     return recipe;
 }
 
@@ -353,6 +365,65 @@ MovedNodes find_moved(const MoveRecipe& recipe, std::size_t number, const Scene&
     return moved;
 }
 
+// Places in millimetres lead far away from everything.
+void look_at_paths(const Scene& scene, Models& made) {
+    Bounds all;
+    for (const Model& model : made.models)
+        for (vec3 p : model.body.positions) all.include(p);
+    for (const Still& still : made.stills)
+        for (vec3 p : still.surface.positions) all.include(p);
+    const float size = glm::length(all.size());
+    auto look_at = [&](const std::string& whose, const Path& path, const Lines& lines, vec3 origin) {
+        float farthest = 0;
+        for (const Waypoint& point : path)
+            farthest = std::max(farthest, glm::distance(point.position, origin));
+        if (farthest < 20 * size || farthest < 1) return;
+        const int line = lines.of("path");
+        made.notes.push_back(
+            fmt::format("{}: its path{} leads {:.3g} m away, {:.0f} times the size of all bodies; "
+                        "paths are in m, so divide millimetres by 1000",
+                        whose, line > 0 ? fmt::format(" (line {})", line) : "", farthest, farthest / size));
+    };
+    for (const ToolRecipe& tool : scene.tools)
+        look_at("tool " + tool.name, tool.path, tool.lines,
+                tool.from || tool.relative ? vec3(0) : all.centre());
+    for (std::size_t i = 0; i < scene.moves.size(); ++i)
+        look_at(fmt::format("move {}", i + 1), scene.moves[i].path, scene.moves[i].lines, vec3(0));
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i)
+        look_at(fmt::format("collider {}", i + 1), scene.colliders[i].path, scene.colliders[i].lines,
+                vec3(0));
+}
+
+// ---- files ----
+
+// All files that a scene names are looked for before the work on the first begins.
+void find_files(const Scene& scene) {
+    auto want = [&](const std::string& whose, const Lines& lines, const char* key, const std::string& file) {
+        if (file.empty() || is_found(file, scene.folder)) return;
+        const int line = lines.of(key);
+        throw Error(fmt::format("cannot find the {} of {}, {},", key, whose, file),
+                    line > 0 ? fmt::format("{}, line {}", scene.file, line) : scene.file,
+                    remedy_for_missing(file, scene.folder));
+    };
+    auto want_surface = [&](const std::string& whose, const BodyRecipe& recipe) {
+        want(whose, recipe.lines, "volume", recipe.volume);
+        const bool stood_in_for = std::ranges::any_of(
+            recipe.stand_ins, [&](const std::string& file) { return is_found(file, scene.folder); });
+        if (!stood_in_for) want(whose, recipe.lines, "surface", recipe.surface);
+        want(whose, recipe.lines, "colour_map", recipe.colour_map);
+        want(whose, recipe.lines, "normal_map", recipe.normal_map);
+        for (const Region& region : recipe.regions) want(whose, region.lines, "labels", region.labels);
+    };
+    for (const BodyRecipe& body : scene.bodies) want_surface("body " + body.name, body);
+    for (const BodyRecipe& surface : scene.surfaces) want_surface("surface " + surface.name, surface);
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
+        const ColliderRecipe& collider = scene.colliders[i];
+        const bool polygon = std::holds_alternative<Polygon>(collider.collider.shape);
+        want(fmt::format("collider {}", i + 1), collider.lines, polygon ? "polygon.surface" : "field.surface",
+             collider.surface);
+    }
+}
+
 // ---- colliders ----
 
 constexpr double most_field_points = 3e7;
@@ -376,13 +447,16 @@ Polygon polygon_of(const Mesh& mesh, float thickness) {
     return polygon;
 }
 
+double field_points(vec3 size, float spacing) {
+    const dvec3 points = dvec3(size) / double(spacing) + 7.0;
+    return points.x * points.y * points.z;
+}
+
 DistanceField field_of(const Mesh& mesh, float spacing, const std::string& where) {
     const vec3 size = bounds(mesh).size();
     if (!(spacing > 0)) spacing = std::max({size.x, size.y, size.z}) / 64;
-    const dvec3 points = dvec3(size) / double(spacing) + 7.0;
-    if (!(points.x * points.y * points.z <= most_field_points))
-        throw Error(fmt::format("a field with a spacing of {} m would need {:.3g} points", spacing,
-                                points.x * points.y * points.z),
+    if (const double points = field_points(size, spacing); !(points <= most_field_points))
+        throw Error(fmt::format("a field with a spacing of {} m would need {:.3g} points", spacing, points),
                     where, "use a larger spacing");
     return distance_field(mesh, spacing);
 }
@@ -427,7 +501,17 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
                 result.notes.push_back(fmt::format(
                     "{}: its surface has {} open edges, so what is inside is a guess; close it first", where,
                     open));
-            collider.shape = field_of(mesh, std::get<DistanceField>(collider.shape).spacing, where);
+            DistanceField field = field_of(mesh, std::get<DistanceField>(collider.shape).spacing, where);
+            if (const auto thin = thin_walls(mesh, field)) {
+                const bool fits = field_points(bounds(mesh).size(), thin->spacing) <= most_field_points;
+                result.notes.push_back(fmt::format(
+                    "{}: {:.0f} % of its walls are thinner than the {:.3g} m between the points of its "
+                    "field, down to {:.3g} m, so what meets them may go through; {}",
+                    where, 100 * thin->share, field.spacing, thin->thinnest,
+                    fits ? fmt::format("use spacing = {:.2g}", thin->spacing)
+                         : "use a box, a polygon or thicker walls"));
+            }
+            collider.shape = std::move(field);
         }
     }
     vec3 pivot(0);
@@ -441,6 +525,7 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
 
 Models build_all(const Scene& scene, const Earlier* earlier, const Progress& progress) {
     Models result;
+    result.notes = scene.notes;
     for (const BodyRecipe& recipe : scene.bodies)
         result.models.push_back(build_one(recipe, scene, earlier, result.notes, progress));
     for (const BodyRecipe& recipe : scene.surfaces)
@@ -454,6 +539,7 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
                     "give them as recipes, in Scene::colliders");
     result.simulation = scene.simulation;
     for (const ColliderRecipe& recipe : scene.colliders) add_collider(recipe, scene, result);
+    look_at_paths(scene, result);
     for (const ToolRecipe& tool : scene.tools)
         if (tool.kind == ToolKind::press)
             result.simulation.contact +=
@@ -465,7 +551,10 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
 
 }  // namespace
 
-Models build(const Scene& scene, const Progress& progress) { return build_all(scene, nullptr, progress); }
+Models build(const Scene& scene, const Progress& progress) {
+    find_files(scene);
+    return build_all(scene, nullptr, progress);
+}
 
 Models rebuild(const Scene& scene, const Scene& before, const Models& made, const Progress& progress) {
     const Earlier earlier{before, made};

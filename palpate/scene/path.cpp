@@ -14,11 +14,14 @@
 namespace palpate {
 namespace {
 
-// The numbers of a row; empty if any of its words is not a finite number.
-std::vector<double> numbers(const std::string& row) {
+// The numbers of a row; empty if any of its words is not a finite number. Between semicolons or tabs, as
+// spreadsheets of half of Europe write them, a comma is a decimal point.
+std::vector<double> numbers(std::string row) {
+    const char between = row.find(';') != row.npos ? ';' : row.find('\t') != row.npos ? '\t' : ',';
+    if (between != ',') std::replace(row.begin(), row.end(), ',', '.');
     std::vector<double> values;
     std::istringstream words(row);
-    for (std::string word; std::getline(words, word, ',');) {
+    for (std::string word; std::getline(words, word, between);) {
         const auto from = word.find_first_not_of(" \t"), to = word.find_last_not_of(" \t\r");
         if (from == std::string::npos) return {};
         double value = 0;
@@ -111,14 +114,16 @@ Path read_path(const std::filesystem::path& file, Rows kind) {
     int line = 0;
     for (std::string row; std::getline(text, row);) {
         if (++line == 1 && row.starts_with("\xef\xbb\xbf")) row.erase(0, 3);  // a byte-order mark
-        if (row.find_first_not_of(" \t\r,") == std::string::npos) continue;
+        if (row.find_first_not_of(" \t\r,;") == std::string::npos) continue;
         if (line == 1 && row.find_first_of("0123456789") == std::string::npos) continue;  // a heading
         rows.push_back(numbers(row));
         lines.push_back(line);
     }
     if (rows.empty()) throw Error("no waypoint", file.string(), "write rows of t, x, y, z in s and m");
     return make_path(rows, kind, [&](std::size_t row, const std::string& what, const std::string& remedy) {
-        throw Error(fmt::format("line {} {}", lines[row], what), file.string(), remedy);
+        const bool commas = rows[row].size() > 4;  // perhaps some are within numbers
+        throw Error(fmt::format("line {} {}", lines[row], what), file.string(),
+                    remedy + (commas ? ", with points in numbers, or with semicolons between them" : ""));
     });
 }
 

@@ -50,8 +50,9 @@ using RowFails = std::function<void(std::size_t row, const std::string& what, co
 /// A path of rows of finite numbers: time rises, and all rows are as long as the first.
 Path make_path(const std::vector<std::vector<double>>& rows, Rows kind, const RowFails& fail);
 
-/// Reads such rows in s, m and degrees, separated by commas; a first line of words is skipped. Throws Error
-/// with the line's number where one does not fit.
+/// Reads such rows in s, m and degrees, separated by commas, or by semicolons or tabs, and then numbers may
+/// have decimal commas; a first line of words is skipped. Throws Error with the line's number where one does
+/// not fit.
 Path read_path(const std::filesystem::path& file, Rows kind = Rows::places);
 
 }  // namespace palpate

@@ -17,43 +17,54 @@ namespace {
 // ---- what a scene file may hold ----
 
 // A path is the name of a file, or rows of numbers.
-void read_path_value(Reader& read, Path& path, Rows kind, const SceneSource& source,
-                     const std::filesystem::path& folder) {
+void read_path_value(Reader& read, Path& path, Rows kind, const Scene& scene) {
     const toml::node* node = read.get("path");
     if (!node) return;
     if (const auto file = node->value_exact<std::string>()) {
-        path = read_path(find_data(*file, folder), kind);
+        if (!is_found(*file, scene.folder))
+            read.fail(*node, "cannot find the file " + *file, remedy_for_missing(*file, scene.folder));
+        path = read_path(find_data(*file, scene.folder), kind);
         return;
     }
     std::vector<std::vector<double>> rows;
     read.read("path", *node, rows);
-    if (rows.empty()) source.fail(line_of(*node), "a path without a row", "write [[t, x, y, z], …]");
+    if (rows.empty()) read.fail(*node, "a path without a row", "write [[t, x, y, z], …]");
     path = make_path(rows, kind, [&](std::size_t row, const std::string& what, const std::string& remedy) {
-        source.fail(line_of(*node), fmt::format("row {} of a path {}", row + 1, what), remedy);
+        read.fail(*node, fmt::format("row {} of a path {}", row + 1, what),
+                  remedy + (rows[row].size() > 4 ? ", with points in numbers" : ""));
     });
 }
 
 void read_fields(Reader& read, Choice& choice) {
-    read("below", choice.below);
-    read("nodes", choice.nodes);
+    read("below", choice.below, between(0, 1, "", "0.15 is the lowest 15 %"));
+    read("nodes", choice.nodes, zero_or_more("", "count nodes from 0"));
     read("near", choice.near);
-    read("radius", choice.radius);
+    read("radius", choice.radius, zero_or_more("m"));
     read("box", choice.box);
 }
 
+// The moduli and stiffnesses of bodies and their regions. Brain has 1e3 to 1e4 Pa, steel 2e11.
+const NumberRange modulus = above_zero("Pa", "brain has about 1e4 Pa, skin 1e5").usual(50, 1e9);
+const NumberRange stiffness =
+    above_zero("N/m", "springs as soft as tissue have about 1 to 1000 N/m").usual(1e-3, 1e6);
+
 void read_fields(Reader& read, Region& region) {
+    region.lines = read.lines();
     read_fields(read, region.choice);
     read("labels", region.labels);
     read("label", region.label);
-    read("youngs_modulus", region.youngs_modulus);
-    read("stiffness", region.stiffness);
-    read("factor", region.factor);
+    read("youngs_modulus", region.youngs_modulus, modulus);
+    read("stiffness", region.stiffness, stiffness);
+    read("factor", region.factor, above_zero("", "2 is twice as stiff as the body").usual(1e-4, 1e4));
 }
 
 void read_fields(Reader& read, SpringKinds& springs) {
-    read("structural", springs.structural);
-    read("shear", springs.shear);
-    read("flexion", springs.flexion);
+    const NumberRange some = zero_or_more("N/m", "cloth has about 100 N/m").usual(1e-3, 1e6);
+    NumberRange structural = some;
+    structural.above = true;
+    read("structural", springs.structural, structural);
+    read("shear", springs.shear, some);
+    read("flexion", springs.flexion, some);
 }
 
 // The name of a file, or several: the first that is found.
@@ -71,95 +82,104 @@ void read_files(Reader& read, const char* key, std::string& first, std::vector<s
 }
 
 void read_fields(Reader& read, Feel& feel) {
-    read("stiffness", feel.stiffness);
-    read("damping", feel.damping);
-    read("friction", feel.friction.still);
+    const NumberRange friction = zero_or_more("", "0.3 is usual").usual(0, 3);
+    read("stiffness", feel.stiffness, above_zero("N/m", "400 is usual"));
+    read("damping", feel.damping, zero_or_more("N·s/m", "1 is usual"));
+    read("friction", feel.friction.still, friction);
     feel.friction.sliding = std::min(feel.friction.sliding, feel.friction.still);
-    read("sliding", feel.friction.sliding);
-    read("width", feel.dent_width);
-    read("yield", feel.yield);
+    read("sliding", feel.friction.sliding, friction);
+    read("width", feel.dent_width, above_zero("m", "0.01 is usual").usual(1e-5, 1));
+    read("yield", feel.yield, zero_or_more("m", "0.004 keeps what is deeper than 4 mm").usual(1e-6, 1));
 }
 
 // What makes a surface, how it looks and how it feels.
 void read_surface(Reader& read, BodyRecipe& body) {
+    body.lines = read.lines();
     read("name", body.name);
     read("volume", body.volume);
     read_files(read, "surface", body.surface, body.stand_ins);
     read("iso", body.iso);
     read("units", body.units);
     read("rotate", body.rotate);
-    read("size", body.size);
+    read("size", body.size, zero_or_more("m", "0 leaves it as it is"));
     read("centre", body.centre);
-    read("move", body.move);
+    read("move", body.move, any_number("m").usual(0, 100));
     read("largest", body.largest);
-    read("weld", body.repair.weld);
-    read("specks", body.repair.specks);
+    read("weld", body.repair.weld, zero_or_more("m"));
+    read("specks", body.repair.specks,
+         between(0, 0.999, "", "0.01 drops parts shorter than 1 % of the longest"));
     read("solid", body.repair.solid);
-    read("voxel", body.repair.voxel);
-    read("smooth", body.smooth);
-    read("faces", body.faces);
-    read("colour", body.colour);
-    read("shine", body.shine);
+    read("voxel", body.repair.voxel, zero_or_more("m"));
+    read("smooth", body.smooth, between(0, 1000, "passes"));
+    read("faces", body.faces, zero_or_more("", "0 leaves them as they are"));
+    read.colour("colour", body.colour);
+    read("shine", body.shine, between(0, 1, "", "0 is dull, 1 is wet"));
     read("shade", body.shade);
     read.table("touch", [&](Reader& inside) { read_fields(inside, body.feel); });
 }
 
-void read_fields(Reader& read, BodyRecipe& body) {
-    read_surface(read, body);
-    read("dims", body.dims);
-    read("cloth", body.cloth);
-    read("sheet", body.sheet);
-    read("nodes", body.nodes);
-    read("spacing", body.spacing);
-    read("cage", body.cage);
-    read("youngs_modulus", body.material.youngs_modulus);
-    read("stiffness", body.material.stiffness);
+void read_material(Reader& read, BodyRecipe& body) {
+    read("youngs_modulus", body.material.youngs_modulus, modulus);
+    read("stiffness", body.material.stiffness, stiffness);
     read.table("springs", [&](Reader& inside) { read_fields(inside, body.springs.emplace()); });
-    read("density", body.material.density);
-    read("mass", body.material.mass);
-    read("damping", body.material.damping);
-    read("link_damping", body.material.link_damping);
+    read("density", body.material.density,
+         body.is_cloth() ? above_zero("kg/m²", "a shirt has about 0.15 kg/m²").usual(1e-3, 100)
+                         : above_zero("kg/m³", "water has 1000 kg/m³").usual(5, 3e4));
+    read("mass", body.material.mass, above_zero("kg", "a brain has 1.4 kg").usual(1e-6, 1e4));
+    read("damping", body.material.damping, zero_or_more("1/s", "1 to 10 is usual").usual(0, 1e4));
+    read("link_damping", body.material.link_damping,
+         zero_or_more("s", "1e-5 to 1e-3 is usual").usual(0, 0.1));
     read("links", body.material.links);
+}
+
+void read_fields(Reader& read, BodyRecipe& body) {
+    constexpr double most_nodes = 1e7;
+    read_surface(read, body);
+    read("dims", body.dims, between(1, most_nodes, "nodes"));
+    read("cloth", body.cloth, between(1, most_nodes, "nodes"));
+    read("sheet", body.sheet);
+    read("nodes", body.nodes, between(1, most_nodes, "", "20000 is usual"));
+    read("spacing", body.spacing, above_zero("m"));
+    read("cage", body.cage, between(1, most_nodes, "nodes"));
+    read_material(read, body);
     read("mapping", body.mapping);
     read("colour_map", body.colour_map);
     if (!body.colour_map.empty() && !read.has("colour")) body.colour = vec3(1);
     read("normal_map", body.normal_map);
-    read("weave", body.weave);
+    read("weave", body.weave, between(1, 128, "threads", "write weave = [60, 40]"));
     read.table("pin", [&](Reader& inside) { read_fields(inside, body.pin); });
-    read.each("region", [&](Reader& inside, int line) {
-        Region& region = body.regions.emplace_back();
-        region.line = line;
-        read_fields(inside, region);
-    });
+    read.each("region", [&](Reader& inside) { read_fields(inside, body.regions.emplace_back()); });
 }
 
 // ---- colliders ----
 
+const NumberRange extent = above_zero("m").usual(1e-5, 100);
+
 void read_shape(Reader& read, Plane& plane) {
     read("normal", plane.normal);
-    read("offset", plane.offset);
+    read("offset", plane.offset, any_number("m").usual(0, 100));
 }
 
 void read_shape(Reader& read, Sphere& sphere) {
     read("centre", sphere.centre);
-    read("radius", sphere.radius);
+    read("radius", sphere.radius, extent);
 }
 
 void read_shape(Reader& read, Capsule& capsule) {
     read("from", capsule.from);
     read("to", capsule.to);
-    read("radius", capsule.radius);
+    read("radius", capsule.radius, extent);
 }
 
-void read_shape(Reader& read, Box& box, const SceneSource& source) {
+void read_shape(Reader& read, Box& box) {
     vec3 size(0), rotate(0);
     read("centre", box.centre);
-    read("half", box.half);
-    read("size", size);
+    read("half", box.half, zero_or_more("m"));
+    read("size", size, zero_or_more("m"));
     read("rotate", rotate);
-    read("rounding", box.rounding);
+    read("rounding", box.rounding, zero_or_more("m"));
     if (read.has("half") == read.has("size"))
-        source.fail(read.line(), "a box wants half or size", "give it one of them");
+        read.fail("a box wants exactly one of half and size", "give it one of them");
     if (read.has("size")) box.half = 0.5f * size;
     const mat3 axes = turn(rotate);
     box.axes = {axes[0], axes[1], axes[2]};
@@ -173,32 +193,30 @@ void read_file(Reader& read, ColliderRecipe& recipe) {
     read("move", recipe.move);
 }
 
-void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe, const SceneSource& source) {
+void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe) {
     std::vector<std::vector<vec3>> triangles;
     read_file(read, recipe);
     read("triangles", triangles);
-    read("thickness", polygon.thickness);
+    read("thickness", polygon.thickness, extent);
     if (read.has("surface") == read.has("triangles"))
-        source.fail(read.line(), "a polygon wants a surface or triangles", "give it one of them");
+        read.fail("a polygon wants exactly one of surface and triangles", "give it one of them");
     if (read.has("triangles") && (read.has("units") || read.has("rotate") || read.has("move")))
-        source.fail(read.line(), "a polygon's units, rotate and move are for a surface", "remove them");
+        read.fail("a polygon's units, rotate and move are for a surface", "remove them");
     if (read.has("triangles") && triangles.empty())
-        source.fail(read.line(), "a polygon without a triangle", "write [[[…], […], […]], …]");
+        read.fail("a polygon without a triangle", "write [[[…], […], […]], …]");
     for (const auto& corners : triangles) {
-        if (corners.size() != 3)
-            source.fail(read.line(), "a triangle without three corners", "write [[[…], […], […]], …]");
+        if (corners.size() != 3) read.fail("a triangle without three corners", "write [[[…], […], […]], …]");
         polygon.triangles.push_back({corners[0], corners[1], corners[2]});
     }
 }
 
-void read_shape(Reader& read, DistanceField& field, ColliderRecipe& recipe, const SceneSource& source) {
+void read_shape(Reader& read, DistanceField& field, ColliderRecipe& recipe) {
     read_file(read, recipe);
-    read("spacing", field.spacing);
-    if (recipe.surface.empty()) source.fail(read.line(), "a field without a surface", "name a closed mesh");
+    read("spacing", field.spacing, extent);
+    if (recipe.surface.empty()) read.fail("a field without a surface", "name a closed mesh");
 }
 
-void read_fields(Reader& read, ColliderRecipe& recipe, const SceneSource& source,
-                 const std::filesystem::path& folder) {
+void read_fields(Reader& read, ColliderRecipe& recipe, const Scene& scene) {
     int shapes = 0;
     auto shape = [&](const char* key, auto one, auto... more) {
         read.table(key, [&](Reader& inside) {
@@ -207,55 +225,56 @@ void read_fields(Reader& read, ColliderRecipe& recipe, const SceneSource& source
             recipe.collider.shape = one;
         });
     };
+    recipe.lines = read.lines();
     shape("plane", Plane{});
     shape("sphere", Sphere{});
     shape("capsule", Capsule{});
-    shape("box", Box{}, std::cref(source));
-    shape("polygon", Polygon{}, std::ref(recipe), std::cref(source));
-    shape("field", DistanceField{}, std::ref(recipe), std::cref(source));
-    read("friction", recipe.collider.friction);
-    read("margin", recipe.collider.margin);
-    read("colour", recipe.colour);
-    read_path_value(read, recipe.path, Rows::poses, source, folder);
+    shape("box", Box{});
+    shape("polygon", Polygon{}, std::ref(recipe));
+    shape("field", DistanceField{}, std::ref(recipe));
+    read("friction", recipe.collider.friction,
+         zero_or_more("", "wet tissue on steel has 0.1, cloth on wood 0.4").usual(0, 3));
+    read("margin", recipe.collider.margin, zero_or_more("m").usual(0, 1));
+    read.colour("colour", recipe.colour);
+    read_path_value(read, recipe.path, Rows::poses, scene);
     read("about", recipe.about);
     read.finish();  // a misspelt shape is named as such
-    if (shapes > 1) source.fail(recipe.line, "a collider with two shapes", "write one [[collider]] for each");
+    if (shapes > 1) read.fail("a collider with two shapes", "write one [[collider]] for each");
     if (shapes == 0)
-        source.fail(recipe.line, "a collider without a shape",
-                    "give it a plane, sphere, capsule, box, polygon or field");
+        read.fail("a collider without a shape", "give it a plane, sphere, capsule, box, polygon or field");
 }
 
 // ---- what moves ----
 
-void read_fields(Reader& read, MoveRecipe& move, const SceneSource& source,
-                 const std::filesystem::path& folder) {
+void read_fields(Reader& read, MoveRecipe& move, const Scene& scene) {
+    move.lines = read.lines();
     read("body", move.body);
     read.table("nodes", [&](Reader& inside) { read_fields(inside, move.nodes); });
-    read_path_value(read, move.path, Rows::poses, source, folder);
+    read_path_value(read, move.path, Rows::poses, scene);
     read("about", move.about);
 }
 
-void read_fields(Reader& read, ToolRecipe& tool, const SceneSource& source,
-                 const std::filesystem::path& folder) {
+void read_fields(Reader& read, ToolRecipe& tool, const Scene& scene) {
+    tool.lines = read.lines();
     read("name", tool.name);
     read("kind", tool.kind);
     if (tool.kind == ToolKind::drag) tool.stiffness = Drag{}.stiffness;
     read("device", tool.device);
-    read("radius", tool.radius);
-    read("stiffness", tool.stiffness);
+    read("radius", tool.radius, above_zero("m", "a finger's tip has about 0.01 m").usual(1e-5, 1));
+    read("stiffness", tool.stiffness, above_zero("N/m", "400 is usual").usual(1e-3, 1e6));
     read("from", tool.from);
     read("along", tool.along);
-    read("shaft", tool.shaft);
+    read("shaft", tool.shaft, zero_or_more("m").usual(0, 10));
     read("body", tool.body);
     read("near", tool.near);
     read("relative", tool.relative);
-    read("colour", tool.colour);
-    read_path_value(read, tool.path, Rows::places, source, folder);
+    read.colour("colour", tool.colour);
+    read_path_value(read, tool.path, Rows::places, scene);
     auto refuse = [&](std::initializer_list<const char*> keys, const std::string& remedy) {
         for (const char* key : keys)
-            if (read.has(key))
-                source.fail(tool.line, fmt::format("\"{}\" means nothing to a {}", key, name_of(tool.kind)),
-                            remedy);
+            if (const toml::node* node = read.get(key))
+                read.fail(*node, fmt::format("\"{}\" means nothing to a {}", key, name_of(tool.kind)),
+                          remedy);
     };
     if (tool.kind == ToolKind::drag)
         refuse({"from", "along", "shaft"}, "remove it");
@@ -265,15 +284,17 @@ void read_fields(Reader& read, ToolRecipe& tool, const SceneSource& source,
         refuse({"stiffness"}, "say it of the surfaces: touch = { stiffness = 400 }");
 }
 
+const NumberRange air = zero_or_more("kg/m³", "1.2 is usual").usual(0.01, 2000);
+
 // Wind brings air with it.
-void read_wind(Reader& read, Scene& scene, const SceneSource& source) {
+void read_wind(Reader& read, Scene& scene) {
     std::optional<vec3> velocity;
-    read("velocity", velocity);
-    read_path_value(read, scene.wind, Rows::places, source, scene.folder);
+    read("velocity", velocity, any_number("m/s", "a storm has 25 m/s").usual(0, 100));
+    read_path_value(read, scene.wind, Rows::places, scene);
     if (velocity.has_value() == read.has("path"))
-        source.fail(read.line(), "wind wants a velocity or a path", "give it one of them");
+        read.fail("wind wants exactly one of velocity and path", "give it one of them");
     if (velocity) scene.wind = {{0, *velocity}};
-    read("density", scene.simulation.air);
+    read("density", scene.simulation.air, air);
 }
 
 // "auto" or seconds.
@@ -281,8 +302,7 @@ void read_step(Reader& read, double& step) {
     const toml::node* node = read.get("step");
     if (!node || node->value_exact<std::string>() == "auto") return;
     if (!node->is_number()) read.wrong("step", *node, "\"auto\" or a number of seconds");
-    read.read("step", *node, step);
-    if (!(step > 0)) read.wrong("step", *node, "\"auto\" or a number of seconds above zero");
+    read("step", step, above_zero("s", "write \"auto\" or seconds, such as 0.001"));
 }
 
 // A point, or the name of a body.
@@ -296,65 +316,51 @@ void read_look_at(Reader& read, std::variant<vec3, std::string>& look_at) {
     }
 }
 
-void read_fields(Reader& read, Scene& scene, const SceneSource& source) {
+void read_camera(Reader& read, Scene& scene) {
+    read("eye", scene.camera.eye);
+    read("up", scene.camera.up);
+    read("angle", scene.camera.angle, between(0.01, 179, "degrees", "35 is usual"));
+    read_look_at(read, scene.look_at);
+    std::string projection = scene.camera.orthographic ? "orthographic" : "perspective";
+    read("projection", projection);
+    if (projection != "orthographic" && projection != "perspective")
+        read.wrong("projection", *read.get("projection"), "a projection",
+                   "choose perspective or orthographic");
+    scene.camera.orthographic = projection == "orthographic";
+}
+
+void read_fields(Reader& read, Scene& scene) {
     constexpr float usual_air = 1.2f;  // kg/m³
-    std::optional<float> air;
-    read.table("simulation", [&](Reader& inside) {
+    std::optional<float> still_air;
+    read.table_or_none("simulation", [&](Reader& inside) {
         inside("backend", scene.simulation.backend);
-        inside("threads", scene.simulation.threads);
+        inside("threads", scene.simulation.threads,
+               between(1, most_threads, "", "use no more than the machine has cores"));
         inside("integrator", scene.simulation.integrator);
         read_step(inside, scene.simulation.step);
-        inside("gravity", scene.simulation.gravity);
-        inside("duration", scene.duration);
-        inside("air", air);
+        inside("gravity", scene.simulation.gravity,
+               between(-1e6, 1e6, "m/s²", "the Earth's is 9.81 m/s²").usual(1e-3, 100));
+        inside("duration", scene.duration, between(1e-6, 1e6, "s").usual(0, 3600));
+        inside("air", still_air, air);
     });
     read.table("wind", [&](Reader& inside) {
-        if (air && inside.has("density"))
-            source.fail(inside.line(), "the air's density is said twice", "remove simulation.air");
+        if (still_air && inside.has("density"))
+            inside.fail("the air's density is said twice", "remove simulation.air");
         scene.simulation.air = usual_air;
-        read_wind(inside, scene, source);
+        read_wind(inside, scene);
     });
-    if (air) scene.simulation.air = *air;
-    read.table("camera", [&](Reader& inside) {
-        inside("eye", scene.camera.eye);
-        inside("up", scene.camera.up);
-        inside("angle", scene.camera.angle);
-        read_look_at(inside, scene.look_at);
-        std::string projection = scene.camera.orthographic ? "orthographic" : "perspective";
-        inside("projection", projection);
-        if (projection != "orthographic" && projection != "perspective")
-            source.fail(0, "\"" + projection + "\" is no projection", "choose perspective or orthographic");
-        scene.camera.orthographic = projection == "orthographic";
-    });
-    read.table("light", [&](Reader& inside) {
+    if (still_air) scene.simulation.air = *still_air;
+    read.table_or_none("camera", [&](Reader& inside) { read_camera(inside, scene); });
+    read.table_or_none("light", [&](Reader& inside) {
         inside("direction", scene.light.direction);
-        inside("colour", scene.light.colour);
+        inside.colour("colour", scene.light.colour, 10);
     });
-    read.each("body", [&](Reader& inside, int line) {
-        BodyRecipe& body = scene.bodies.emplace_back();
-        body.line = line;
-        read_fields(inside, body);
-    });
-    read.each("surface", [&](Reader& inside, int line) {
-        BodyRecipe& surface = scene.surfaces.emplace_back();
-        surface.line = line;
-        read_surface(inside, surface);
-    });
-    read.each("collider", [&](Reader& inside, int line) {
-        ColliderRecipe& collider = scene.colliders.emplace_back();
-        collider.line = line;
-        read_fields(inside, collider, source, scene.folder);
-    });
-    read.each("move", [&](Reader& inside, int line) {
-        MoveRecipe& move = scene.moves.emplace_back();
-        move.line = line;
-        read_fields(inside, move, source, scene.folder);
-    });
-    read.each("tool", [&](Reader& inside, int line) {
-        ToolRecipe& tool = scene.tools.emplace_back();
-        tool.line = line;
-        read_fields(inside, tool, source, scene.folder);
-    });
+    read.each("body", [&](Reader& inside) { read_fields(inside, scene.bodies.emplace_back()); });
+    read.each("surface", [&](Reader& inside) { read_surface(inside, scene.surfaces.emplace_back()); });
+    read.each("collider",
+              [&](Reader& inside) { read_fields(inside, scene.colliders.emplace_back(), scene); });
+    read.each("move", [&](Reader& inside) { read_fields(inside, scene.moves.emplace_back(), scene); });
+    read.each("tool", [&](Reader& inside) { read_fields(inside, scene.tools.emplace_back(), scene); });
     read.finish();
 }
 
@@ -395,6 +401,19 @@ std::vector<std::string> target(const Change& change) {
     return split(change.substr(0, change.find('=')), '.');
 }
 
+// Of keys of which only one may be given, a change to one takes the others away.
+void take_away_others(toml::table& table, const std::string& key) {
+    const std::vector<std::string_view> choices[] = {{"density", "mass"},
+                                                     {"youngs_modulus", "stiffness", "springs", "factor"},
+                                                     {"nodes", "spacing"},
+                                                     {"velocity", "path"},
+                                                     {"half", "size"}};
+    for (const auto& choice : choices)
+        if (std::ranges::count(choice, key) > 0)
+            for (std::string_view other : choice)
+                if (other != key) table.erase(other);
+}
+
 // Whether it names what a body is made from.
 bool names_source(const Change& change) {
     const std::vector<std::string> words = target(change);
@@ -403,14 +422,31 @@ bool names_source(const Change& change) {
            std::ranges::count(sources, words[2]) > 0;
 }
 
+// Of tables the names, or the numbers of those that have none: "skin, 2".
+std::string names_in(const toml::array& tables) {
+    std::string list;
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const toml::table* table = tables[i].as_table();
+        const auto* name = table ? table->get_as<std::string>("name") : nullptr;
+        list += (list.empty() ? "" : ", ") + (name ? name->get() : std::to_string(i + 1));
+    }
+    return list;
+}
+
 // "collider.3={…}" where there are two: a third.
 void add_one(toml::array& tables, const std::string& key, const Change& change, const SceneSource& source) {
-    const toml::table value = parse_value(key, change.substr(change.find('=') + 1));
+    const std::string list = target(change).front(), text = change.substr(change.find('=') + 1);
+    const toml::table value = parse_value(key, text);
     const toml::table* one = value.get_as<toml::table>(key);
-    if (key != std::to_string(tables.size() + 1) || !one)
-        source.fail(
-            0, "no such one",
-            fmt::format("name a key of one of them, or write {}={{ … }} to add one", tables.size() + 1));
+    if (key != std::to_string(tables.size() + 1) || !one) {
+        const std::string names = names_in(tables), first = names.substr(0, names.find(','));
+        const std::string add = fmt::format("{}.{}={{ … }} to add one", list, tables.size() + 1);
+        const bool is_name = find_named(tables, key) != nullptr;
+        source.fail(0, one || is_name ? "it names no key" : fmt::format("it does not say which {}", list),
+                    tables.empty() ? "write " + add
+                                   : fmt::format("write {}.{}.{}={}, or {}", list, is_name ? key : first,
+                                                 one || is_name ? "KEY" : key, one ? "…" : text, add));
+    }
     tables.push_back(*one);
 }
 
@@ -430,7 +466,8 @@ void apply(toml::table& root, const Change& change) {
             if (i + 1 == words.size()) return add_one(*tables, key, change, source);
             table = find_named(*tables, words[++i]);
             if (!table)
-                source.fail(0, "no " + words[i - 1] + " named " + words[i], "use a name from the scene");
+                source.fail(0, "no " + words[i - 1] + " named " + words[i],
+                            "choose from " + names_in(*tables));
         } else {
             if (!node && key == "1" && i + 1 == words.size()) {
                 toml::array& first = *table->insert(words[i], toml::array{}).first->second.as_array();
@@ -447,6 +484,7 @@ void apply(toml::table& root, const Change& change) {
         for (const char* old :
              {"volume", "surface", "dims", "cloth", "iso", "units", "colour_map", "normal_map", "weave"})
             table->erase(old);
+    take_away_others(*table, key);
     table->insert_or_assign(key, *value.get(key));
 }
 
@@ -454,14 +492,35 @@ void apply(toml::table& root, const Change& change) {
 
 namespace {
 
+std::string nth_line(const std::string& text, int number) {
+    std::istringstream lines(text);
+    std::string line;
+    for (int i = 0; i < number; ++i) std::getline(lines, line);
+    return line;
+}
+
+// The value of a line that is a number with a comma, written with a point; empty if it is none.
+std::string decimal_comma(const std::string& line) {
+    std::string value = line.substr(line.find('=') + 1);
+    value = value.substr(0, value.find('#'));
+    std::erase_if(value, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    const bool is_number = value.find_first_not_of("+-0123456789,") == value.npos;
+    const auto comma = value.find(',');
+    if (!is_number || comma == value.npos || comma != value.rfind(',')) return "";
+    value[comma] = '.';
+    return value;
+}
+
 toml::table changed_table(const std::string& text, const SceneSource& source,
                           std::span<const Change> changes) {
     toml::table root;
     try {
         root = toml::parse(text);
     } catch (const toml::parse_error& error) {
-        source.fail(int(error.source().begin.line), std::string(error.description()),
-                    "correct the TOML there");
+        const int line = int(error.source().begin.line);
+        const std::string number = decimal_comma(nth_line(text, line));
+        source.fail(line, std::string(error.description()),
+                    number.empty() ? "correct the TOML there" : "write numbers with a point: " + number);
     }
     // Another source first: it takes away what was said of the old one.
     std::vector<Change> ordered(changes.begin(), changes.end());
@@ -478,9 +537,12 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     toml::table root = changed_table(text, source, changes);
     Scene scene;
     scene.name = std::filesystem::path(name).stem().string();
+    scene.file = name;
     scene.folder = folder;
-    Reader reader(root, source, "a scene");
-    read_fields(reader, scene, source);
+    Reading reading{source};
+    Reader reader(root, reading, "");
+    read_fields(reader, scene);
+    scene.notes = std::move(reading.notes);
     check(scene, source);
     return scene;
 }

@@ -1,6 +1,7 @@
 #include "palpate/scene/scene.h"
 
 #include "palpate/base/error.h"
+#include "palpate/base/names.h"
 
 #include <cstdlib>
 
@@ -27,11 +28,28 @@ bool is_found(const std::string& name, const std::filesystem::path& folder) {
     return find(name, folder).has_value();
 }
 
+std::string remedy_for_missing(const std::string& name, const std::filesystem::path& folder) {
+    const std::string wanted = std::filesystem::path(name).filename().string();
+    const std::filesystem::path beside = (folder / name).parent_path();
+    std::string nearest;
+    int changes = 3;  // more letters make another name
+    std::error_code error;
+    for (const auto& file : std::filesystem::directory_iterator(beside.empty() ? "." : beside, error))
+        if (const int some = edits(file.path().filename().string(), wanted); some < changes) {
+            nearest = file.path().filename().string();
+            changes = some;
+        }
+    if (!nearest.empty()) return "did you mean " + nearest + "?";
+    return "name it from the scene's folder, or set PALPATE_DATA to the folder that holds it; the brain and "
+           "the "
+           "head come with Debian's mricron-data, other meshes with scripts/get-data or from where their "
+           "scene "
+           "says";
+}
+
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder) {
     if (const auto path = find(name, folder)) return *path;
-    throw Error("cannot find the file", name,
-                "set PALPATE_DATA to the folder that holds it; the brain and the head come with Debian's "
-                "mricron-data, other meshes with scripts/get-data or from where their scene says");
+    throw Error("cannot find the file", name, remedy_for_missing(name, folder));
 }
 
 }  // namespace palpate

@@ -10,6 +10,7 @@
 #include "palpate/scene/path.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,8 +20,22 @@
 namespace palpate {
 
 // A scene is recipes: what to read, what to make of it, what happens to it. Plain data; build() (build.h)
-// makes the bodies. docs/scene-format.md describes the file; each field below is a key of the same name, and
-// `line` says where in the file it came from, for messages.
+// makes the bodies. docs/scene-format.md describes the file; each field below is a key of the same name.
+
+/// Where in the file a recipe and its keys came from, for messages. Recipes that differ only in that are
+/// equal.
+struct Lines {
+    int table = 0;                    // 0: nobody knows
+    std::map<std::string, int> keys;  // of those that are given, also as "pin.radius"; 0: by a change
+
+    bool has(const std::string& key) const { return keys.contains(key); }
+    /// The line of a key; of the recipe, if it is not given.
+    int of(const std::string& key) const {
+        const auto found = keys.find(key);
+        return found == keys.end() ? table : found->second;
+    }
+    bool operator==(const Lines&) const { return true; }
+};
 
 /// Which nodes of a body, at rest; several ways may be given at once.
 struct Choice {
@@ -44,7 +59,7 @@ struct Region {
     float youngs_modulus = 0;    // Pa
     float stiffness = 0;         // N/m of each spring
     float factor = 0;            // times as stiff as the body
-    int line = 0;
+    Lines lines;
     bool operator==(const Region&) const = default;
 };
 
@@ -95,7 +110,7 @@ struct BodyRecipe {
     std::optional<ivec2> weave;  // that of a cloth of so many threads across u and v (mesh/relief.h)
     Shade shade = Shade::colour;
     Feel feel;  // under a tool that is felt
-    int line = 0;
+    Lines lines;
 
     bool has_normal_map() const { return !normal_map.empty() || weave; }
     bool is_textured() const { return !colour_map.empty() || has_normal_map(); }
@@ -114,7 +129,7 @@ struct ColliderRecipe {
     Path path;                   // shift and rotation over time; empty: it stands still
     std::optional<vec3> about;  // the point that the rotation leaves where it is; else the shape's own middle
     vec3 colour = vec3(0.5f);
-    int line = 0;
+    Lines lines;
 };
 
 /// Prescribed motion of some nodes.
@@ -124,7 +139,7 @@ struct MoveRecipe {
     Path path;  // shift and rotation over time
     std::optional<vec3>
         about;  // the point that the rotation leaves where it is; else the nodes' middle at rest
-    int line = 0;
+    Lines lines;
     bool operator==(const MoveRecipe&) const = default;
 };
 
@@ -159,13 +174,14 @@ struct ToolRecipe {
     std::string body;          // whose node it pulls; empty: the nearest body's
     std::optional<vec3> near;  // it takes the node nearest to this point; else to the path's first position
     bool relative = false;     // the path's positions are counted from where that node is then
-    int line = 0;
+    Lines lines;
     bool operator==(const ToolRecipe&) const = default;
 };
 
 /// All that a scene's file says.
 struct Scene {
     std::string name;              // of the file, without its ending
+    std::string file;              // as it was named, for messages
     std::filesystem::path folder;  // that files are named from
     Simulation simulation;         // without what build() adds: colliders, contact and pull
     double duration = 5;           // s, of a run that is not told otherwise
@@ -179,6 +195,7 @@ struct Scene {
     std::vector<ColliderRecipe> colliders;
     std::vector<MoveRecipe> moves;
     std::vector<ToolRecipe> tools;
+    std::vector<std::string> notes;  // what looks wrong in the file: a number whose unit may be another
 };
 
 /// A change from outside the file: `body.brain.nodes=5000`. `collider.3={ plane = {} }` adds a third of two.
@@ -225,5 +242,7 @@ const std::vector<ShippedScene>& shipped_scenes();
 /// Error.
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder);
 bool is_found(const std::string& name, const std::filesystem::path& folder);
+/// What to do where it is not found: the file beside the scene whose name is nearly that, or where files go.
+std::string remedy_for_missing(const std::string& name, const std::filesystem::path& folder);
 
 }  // namespace palpate

@@ -1,6 +1,6 @@
 #pragma once
-// Reads TOML into plain structs, with messages that name the file, the line and the nearest known key. It
-// brings in toml++, so only read_scene.cpp includes it.
+// Reads TOML into plain structs, with messages that name the file, the line, the key, its unit and the
+// nearest known key. It brings in toml++, so only read_scene.cpp includes it.
 #include "palpate/base/error.h"
 #include "palpate/base/names.h"
 #include "palpate/base/vectors.h"
@@ -10,8 +10,11 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -19,33 +22,132 @@
 
 namespace palpate {
 
+/// 0: it came with a change, not from the file.
 inline int line_of(const toml::node& node) { return int(node.source().begin.line); }
+
+/// What a number may be, and what it usually is: what is outside its range is refused; what is merely unusual
+/// is taken, and a note asks whether its unit is right.
+struct NumberRange {
+    double least = -std::numeric_limits<double>::infinity(), most = -least;
+    bool above = false;                           // `least` itself is too little
+    std::string_view unit = "";                   // "Pa"
+    std::string_view example = "";                // "brain is about 1e4 Pa"
+    double usual_least = 0, usual_most = -least;  // of its absolute value; 0 is never unusual
+
+    NumberRange usual(double low, double high) const {
+        NumberRange range = *this;
+        range.usual_least = low;
+        range.usual_most = high;
+        return range;
+    }
+    bool holds(double value) const { return (above ? value > least : value >= least) && value <= most; }
+    bool is_usual(double value) const {
+        const double size = std::abs(value);
+        return size == 0 || (size >= usual_least && size <= usual_most);
+    }
+    /// "not above 0", "negative", "not from 0 to 1".
+    std::string complaint() const {
+        const bool no_end = std::isinf(most);
+        if (no_end && least == 0) return above ? "not above 0" : "negative";
+        if (no_end) return fmt::format("less than {}", least);
+        return fmt::format("not {} {} {} {}", above ? "above" : "from", least, above ? "and at most" : "to",
+                           most);
+    }
+};
+
+inline NumberRange any_number(std::string_view unit, std::string_view example = "") {
+    NumberRange range;
+    range.unit = unit;
+    range.example = example;
+    return range;
+}
+inline NumberRange zero_or_more(std::string_view unit, std::string_view example = "") {
+    NumberRange range = any_number(unit, example);
+    range.least = 0;
+    return range;
+}
+inline NumberRange above_zero(std::string_view unit, std::string_view example = "") {
+    NumberRange range = zero_or_more(unit, example);
+    range.above = true;
+    return range;
+}
+inline NumberRange between(double least, double most, std::string_view unit = "",
+                           std::string_view example = "") {
+    NumberRange range = any_number(unit, example);
+    range.least = least;
+    range.most = most;
+    return range;
+}
+
+/// What all tables of a scene share while they are read.
+struct Reading {
+    const SceneSource& source;
+    std::vector<std::string> notes = {};  // what looks wrong
+    std::map<std::string, std::set<std::string>> keys =
+        {};  // that each table may have, by its path: "body.cube"
+};
+
+/// What a value is, for messages: "many" in quotes, or "a list of 3".
+inline std::string in_words(const toml::node& node) {
+    if (const auto text = node.value_exact<std::string>()) return '"' + *text + '"';
+    if (const auto truth = node.value_exact<bool>()) return *truth ? "true" : "false";
+    if (const auto number = node.value<double>()) return fmt::format("{:.6g}", *number);
+    if (const toml::array* array = node.as_array()) return fmt::format("a list of {}", array->size());
+    return node.is_table() ? "a table" : "a date or a time";
+}
 
 /// Reads one table into a struct: it is called with each key and where its value goes. Keys that it was never
 /// called with are errors, found by finish().
 class Reader {
  public:
-    Reader(const toml::table& table, const SceneSource& source, std::string what)
-        : table_(table), source_(source), what_(std::move(what)) {}
+    /// `path`: of the table in its scene, as a change names it: "body.cube.pin"; empty for all of the scene.
+    Reader(const toml::table& table, Reading& reading, std::string path)
+        : table_(table), reading_(reading), path_(std::move(path)) {}
 
     template <class T>
     void operator()(const char* key, T& value) {
-        known_.insert(key);
-        if (const toml::node* node = table_.get(key)) read(key, *node, value);
+        if (const toml::node* node = get(key)) read(key, *node, value);
     }
 
-    /// The tables of `[[key]]`, each read by read_one(reader, line).
+    /// A number, or a vector of numbers, that must be in a range.
+    template <class T>
+    void operator()(const char* key, T& value, const NumberRange& range) {
+        const toml::node* node = get(key);
+        if (!node) return;
+        read(key, *node, value);
+        check(key, *node, range);
+    }
+
+    /// A colour: linear light from 0 to `most`.
+    void colour(const char* key, vec3& value, float most = 1) {
+        const toml::node* node = get(key);
+        if (!node) return;
+        read(key, *node, value);
+        if (std::min({value.x, value.y, value.z}) >= 0 && std::max({value.x, value.y, value.z}) <= most)
+            return;
+        auto linear = [](float byte) {  // as sRGB has it
+            const double part = std::clamp(byte / 255.0, 0.0, 1.0);
+            return part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
+        };
+        fail(*node, fmt::format("{} is not from 0 to {}", full(key), most),
+             fmt::format(
+                 "of 0 to 255 as pictures have it, write [{:.2g}, {:.2g}, {:.2g}], which is linear light",
+                 linear(value.x), linear(value.y), linear(value.z)));
+    }
+
+    /// The tables of `[[key]]`, each read by read_one(reader).
     template <class ReadOne>
     void each(const char* key, ReadOne read_one) {
-        known_.insert(key);
-        const toml::node* node = table_.get(key);
+        const toml::node* node = get(key);
         if (!node) return;
         const toml::array* array = node->as_array();
         if (!array || !array->is_array_of_tables())
-            wrong(key, *node, fmt::format("tables; write [[{}]]", key));
-        for (const toml::node& one : *array) {
-            Reader reader(*one.as_table(), source_, fmt::format("a {}", key));
-            read_one(reader, line_of(one));
+            wrong(key, *node, "a list of tables", fmt::format("write [[{}]]", key));
+        for (std::size_t i = 0; i < array->size(); ++i) {
+            const toml::table& one = *array->get(i)->as_table();
+            const auto* name = one.get_as<std::string>("name");
+            Reader reader(one, reading_, full(key) + "." + (name ? name->get() : std::to_string(i + 1)));
+            read_one(reader);
             reader.finish();
         }
     }
@@ -53,36 +155,62 @@ class Reader {
     /// A table inside this one, read by read_inside(reader) if it is there.
     template <class ReadInside>
     void table(const char* key, ReadInside read_inside) {
-        known_.insert(key);
-        const toml::node* node = table_.get(key);
+        const toml::node* node = get(key);
         if (!node) return;
-        if (!node->is_table()) wrong(key, *node, "a table");
-        Reader reader(*node->as_table(), source_, key);
+        if (!node->is_table()) wrong(key, *node, "a table", fmt::format("write {} = {{ … }}", key));
+        Reader reader(*node->as_table(), reading_, full(key));
+        read_inside(reader);
+        reader.finish();
+    }
+
+    /// The same, also where it is not there: as if it were empty.
+    template <class ReadInside>
+    void table_or_none(const char* key, ReadInside read_inside) {
+        if (get(key)) return table(key, read_inside);
+        const toml::table none;
+        Reader reader(none, reading_, full(key));
         read_inside(reader);
         reader.finish();
     }
 
     bool has(const char* key) const { return table_.contains(key); }
-    int line() const { return line_of(table_); }
     const toml::node* get(const char* key) {
         known_.insert(key);
         return table_.get(key);
     }
 
-    [[noreturn]] void wrong(std::string_view key, const toml::node& node, std::string_view wanted) const {
-        source_.fail(line_of(node), fmt::format("\"{}\" is not {}", key, wanted), "correct its value");
+    /// Where the table and its keys stand, and those of the tables in it.
+    Lines lines() const {
+        Lines lines{line_of(table_), {}};
+        for (const auto& [key, node] : table_) {
+            lines.keys[std::string(key.str())] = line_of(node);
+            if (const toml::table* inside = node.as_table())
+                for (const auto& [inner, value] : *inside)
+                    lines.keys[std::string(key.str()) + "." + std::string(inner.str())] = line_of(value);
+        }
+        return lines;
     }
 
-    void finish() const {
+    [[noreturn]] void fail(const toml::node& node, const std::string& what, const std::string& remedy) const {
+        if (line_of(node) > 0) reading_.source.fail(line_of(node), what, remedy);
+        SceneSource{"--set"}.fail(0, what, remedy);
+    }
+    /// About the table itself.
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+        reading_.source.fail(line_of(table_), path_ + ": " + what, remedy);
+    }
+    [[noreturn]] void wrong(std::string_view key, const toml::node& node, std::string_view wanted,
+                            const std::string& remedy = "correct its value") const {
+        fail(node, fmt::format("{} is {}, not {}", full(key), in_words(node), wanted), remedy);
+    }
+
+    void finish() {
+        reading_.keys[path_].insert(known_.begin(), known_.end());
         for (const auto& [key, node] : table_) {
             const std::string name(key.str());
             if (known_.contains(name)) continue;
-            const auto nearest = std::min_element(
-                known_.begin(), known_.end(),
-                [&](const auto& a, const auto& b) { return edits(a, name) < edits(b, name); });
-            source_.fail(
-                line_of(node), fmt::format("unknown key \"{}\" of {}", name, what_),
-                nearest == known_.end() ? "remove it" : fmt::format("did you mean \"{}\"?", *nearest));
+            fail(node, fmt::format("unknown key \"{}\" of {}", name, path_.empty() ? "a scene" : path_),
+                 advice(name));
         }
     }
 
@@ -90,23 +218,25 @@ class Reader {
 
     void read(std::string_view key, const toml::node& node, std::string& value) const {
         const auto text = node.value_exact<std::string>();
-        if (!text) wrong(key, node, "a text in quotes");
+        if (!text) wrong(key, node, "a text", "write it in quotes");
+        if (text->empty()) fail(node, full(key) + " is empty", "write something there, or remove it");
         value = *text;
     }
     void read(std::string_view key, const toml::node& node, bool& value) const {
         const auto truth = node.value_exact<bool>();
-        if (!truth) wrong(key, node, "true or false");
+        if (!truth) wrong(key, node, "true or false", "write one of them, without quotes");
         value = *truth;
     }
     void read(std::string_view key, const toml::node& node, int& value) const {
-        const auto number = node.value_exact<std::int64_t>();
-        if (!number || *number < std::numeric_limits<int>::min() || *number > std::numeric_limits<int>::max())
-            wrong(key, node, "a whole number");
-        value = int(*number);
+        double number = 0;
+        read_number(key, node, number, "a whole number");
+        constexpr double least = std::numeric_limits<int>::min(), most = std::numeric_limits<int>::max();
+        if (number != std::round(number)) wrong(key, node, "a whole number");
+        if (number < least || number > most) wrong(key, node, "a whole number of a sensible size");
+        value = int(number);
     }
     void read(std::string_view key, const toml::node& node, double& value) const {
-        if (!node.is_number() || !std::isfinite(*node.value<double>())) wrong(key, node, "a number");
-        value = *node.value<double>();
+        read_number(key, node, value, "a number");
     }
     void read(std::string_view key, const toml::node& node, float& value) const {
         double wide = 0;
@@ -117,14 +247,18 @@ class Reader {
     template <int L, class T>
     void read(std::string_view key, const toml::node& node, glm::vec<L, T>& value) const {
         const toml::array* array = node.as_array();
+        const char* const wanted = L == 2 ? "two numbers in brackets" : "three numbers in brackets";
         if (!array || array->size() != L)
-            wrong(key, node, L == 2 ? "two numbers in brackets" : "three numbers in brackets");
+            wrong(key, node, wanted,
+                  array && array->size() > L
+                      ? "write them as [0.5, 1], with points in numbers and commas between them"
+                      : fmt::format("write {}", L == 2 ? "[…, …]" : "[…, …, …]"));
         for (int i = 0; i < L; ++i) read(key, (*array)[std::size_t(i)], value[i]);
     }
     template <class T>
     void read(std::string_view key, const toml::node& node, std::vector<T>& value) const {
         const toml::array* array = node.as_array();
-        if (!array) wrong(key, node, "a list in brackets");
+        if (!array) wrong(key, node, "a list", "write it in brackets");
         value.clear();
         for (const toml::node& one : *array) read(key, one, value.emplace_back());
     }
@@ -139,15 +273,109 @@ class Reader {
         read(key, node, name);
         const auto known = value_of<E>(name);
         if (!known)
-            source_.fail(line_of(node), fmt::format("\"{}\" is no {}", name, key),
-                         "choose from " + all_names<E>());
+            fail(node, fmt::format("{} is \"{}\", which is none of its values", full(key), name),
+                 "choose from " + all_names<E>());
         value = *known;
     }
 
  private:
+    std::string full(std::string_view key) const {
+        return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+    }
+
+    void read_number(std::string_view key, const toml::node& node, double& value, const char* wanted) const {
+        if (!node.is_number() || !std::isfinite(*node.value<double>()))
+            wrong(key, node, wanted, how_to_write(node));
+        value = *node.value<double>();
+    }
+
+    // A number in quotes, or with a decimal comma, can be told.
+    static std::string how_to_write(const toml::node& node) {
+        std::string text = node.value_exact<std::string>().value_or("");
+        std::replace(text.begin(), text.end(), ',', '.');
+        double number = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        const bool is_number = !text.empty() && error == std::errc() && end == text.data() + text.size();
+        return is_number ? fmt::format("write {}: with a point, and without quotes", text) : "write a number";
+    }
+
+    // Of a number, or of each of several.
+    void check(std::string_view key, const toml::node& node, const NumberRange& range) {
+        const std::string unit = range.unit.empty() ? "" : " " + std::string(range.unit);
+        auto look_at = [&](double value) {
+            const std::string is = fmt::format("{} is {:.6g}{}", full(key), value, unit);
+            if (!range.holds(value))
+                fail(node, is + ", which is " + range.complaint(),
+                     range.example.empty() ? "correct its value" : std::string(range.example));
+            if (range.is_usual(value)) return;
+            const int line = line_of(node);
+            reading_.notes.push_back(fmt::format("{}{}: is its unit right?{}{}", is,
+                                                 line > 0 ? fmt::format(" (line {})", line) : "",
+                                                 range.example.empty() ? "" : " ", range.example));
+        };
+        for_each_number(node, look_at);
+    }
+    static void for_each_number(const toml::node& node, const std::function<void(double)>& look_at) {
+        if (const toml::array* array = node.as_array())
+            for (const toml::node& one : *array) for_each_number(one, look_at);
+        else
+            look_at(*node.value<double>());
+    }
+
+    // What others call our keys.
+    static constexpr std::pair<std::string_view, const char*> other_words[] = {
+        {"mesh", "surface"},      {"file", "surface"},
+        {"model", "surface"},     {"scale", "size"},
+        {"position", "move"},     {"translate", "move"},
+        {"translation", "move"},  {"fixed", "pin"},
+        {"E", "youngs_modulus"},  {"young", "youngs_modulus"},
+        {"rho", "density"},       {"k", "stiffness"},
+        {"viscosity", "damping"}, {"fov", "angle"},
+        {"target", "look_at"},    {"dt", "step"},
+        {"g", "gravity"},         {"end", "duration"},
+        {"solver", "integrator"}};
+
+    // What to do about a key that is not known here.
+    std::string advice(const std::string& name) const {
+        for (const auto& [word, key] : other_words)
+            if (name == word && known_.contains(key)) return fmt::format("did you mean \"{}\"?", key);
+        for (std::string_view ratio : {"poisson", "poissons_ratio", "poisson_ratio", "nu"})
+            if (name == ratio) return "remove it: Poisson's ratio of a lattice is always 1/4";
+        if (const std::string table = table_with(name); !table.empty())
+            return fmt::format("did you mean {}.{}?", table, name);
+        for (const auto& [path, keys] : reading_.keys)
+            if (path.ends_with("." + name)) return fmt::format("did you mean {}?", path);
+        auto holds = [](std::string_view a, std::string_view b) {
+            return b.size() > 2 && a.find(b) != a.npos;
+        };
+        auto far = [&](const std::string& known) {
+            return holds(known, name) || holds(name, known) ? 0 : edits(known, name);
+        };
+        const auto nearest = std::min_element(known_.begin(), known_.end(),
+                                              [&](const auto& a, const auto& b) { return far(a) < far(b); });
+        if (nearest != known_.end() && 2 * far(*nearest) <= int(std::max(nearest->size(), name.size())))
+            return fmt::format("did you mean \"{}\"?", *nearest);
+        std::string list;
+        for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
+        return "its keys are " + list;
+    }
+
+    // The table that such a key belongs to, by its path: one inside this one, or one of which a scene has a
+    // single one; from all of the scene any. Of several the outermost; empty if there is none.
+    std::string table_with(const std::string& name) const {
+        std::string best;
+        auto depth = [](const std::string& path) { return std::ranges::count(path, '.'); };
+        for (const auto& [path, keys] : reading_.keys) {
+            const bool near = path_.empty() || path.starts_with(path_ + ".") || depth(path) == 0;
+            if (!near || path.empty() || path == path_ || !keys.contains(name)) continue;
+            if (best.empty() || depth(path) < depth(best)) best = path;
+        }
+        return best;
+    }
+
     const toml::table& table_;
-    const SceneSource& source_;
-    std::string what_;
+    Reading& reading_;
+    std::string path_;
     std::set<std::string> known_;
 };
 

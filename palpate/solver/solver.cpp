@@ -5,6 +5,7 @@
 #include "palpate/solver/cpu/cpu.h"
 #include "palpate/solver/gpu/gpu.h"
 #include "palpate/solver/reference/reference.h"
+#include "palpate/solver/short_steps.h"
 #include "palpate/solver/stability.h"
 
 #include <fmt/format.h>
@@ -16,13 +17,6 @@ namespace palpate {
 namespace {
 
 constexpr double most_steps_per_frame = 1000;
-
-const char* remedy(Integrator integrator, bool for_the_tools) {
-    if (for_the_tools) return "use softer tools, or a heavier body";
-    if (integrator == Integrator::explicit_euler || integrator == Integrator::midpoint)
-        return "choose verlet, or give the body more damping";
-    return "use a softer material, a larger spacing or a heavier body, and check its units";
-}
 
 void check_step(const Body& body, const Simulation& simulation, double frequency) {
     const double touched = touched_frequency(body, frequency, simulation.contact, simulation.pull);
@@ -36,13 +30,15 @@ void check_step(const Body& body, const Simulation& simulation, double frequency
     if (simulation.step <= 0 && !(bound > 0))
         throw Error(fmt::format("{} is stable at no step without damping", name_of(integrator)), where,
                     "give the body damping, or choose verlet");
-    const double step = simulation.step > 0
-                            ? simulation.step
-                            : automatic_step(integrator, touched, body.damping, body.link_damping);
-    if (!(simulation.frame / step <= most_steps_per_frame))
-        throw Error(fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of {:.3g} s",
-                                name_of(integrator), simulation.frame / step, step, simulation.frame),
-                    where, remedy(integrator, touched > 2 * frequency));
+    const double automatic = automatic_step(integrator, touched, body.damping, body.link_damping);
+    const double step = simulation.step > 0 ? simulation.step : automatic;
+    const double wanted = simulation.frame / most_steps_per_frame;
+    if (step >= wanted) return;
+    throw Error(fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of {:.3g} s",
+                            name_of(integrator), simulation.frame / step, step, simulation.frame),
+                where,
+                step < automatic ? fmt::format("ask for longer steps: up to {:.3g} s are stable", bound)
+                                 : how_to_lengthen_steps(body, simulation, frequency, wanted));
 }
 
 }  // namespace

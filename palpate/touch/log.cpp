@@ -18,9 +18,9 @@ constexpr std::string_view rate = "# rate ";
 constexpr std::string_view columns = "now,time,x,y,z,buttons,placed,fx,fy,fz";
 
 // Takes a text apart line by line, and a line number by number.
-class Lines {
+class LogLines {
  public:
-    Lines(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
+    LogLines(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
 
     // False if there is no more.
     bool next() {
@@ -91,7 +91,7 @@ void write_log(const std::filesystem::path& file, const Log& log) {
 }
 
 Log parse_log(std::string_view text, const std::string& name) {
-    Lines lines(text, name);
+    LogLines lines(text, name);
     if (!lines.heading(version).empty()) lines.fail(fmt::format("is not \"{}\"", version));
     Log log;
     log.device = lines.heading(device);

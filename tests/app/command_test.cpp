@@ -18,13 +18,49 @@ const std::string brain = "/usr/share/mricron/templates/ch2bet.nii.gz";
 bool have_brain() { return std::filesystem::exists(brain); }
 
 TEST(Command, UsageErrorsEndWithTwo) {
-    for (const char* arguments :
-         {"", "fly", "run", "run box --frames many", "run box --size 12", "run box --fast", "list",
-          "import x.ply", "run box --frames 1 --steps 1", "run box --until-rest soon",
-          "run box --until-rest none", "run box --until-rest --frames 3", "run box --threads 0",
-          "run box --threads many", "bench sing", "bench embed --rounds 0", "doctor me"})
+    for (const char* arguments : {"",
+                                  "fly",
+                                  "run",
+                                  "run box --frames many",
+                                  "run box --size 12",
+                                  "run box --fast",
+                                  "list",
+                                  "import x.ply",
+                                  "run box --frames 1 --steps 1",
+                                  "run box --until-rest soon",
+                                  "run box --until-rest none",
+                                  "run box --until-rest --frames 3",
+                                  "run box --threads 0",
+                                  "run box --threads many",
+                                  "run box --threads 1000",
+                                  "run box --steps -5",
+                                  "run box --frames -1",
+                                  "run box --frames nan",
+                                  "run box --image-every 1",
+                                  "run box --images x --image-every nan",
+                                  "run box --images x --image-every inf",
+                                  "run box --images x --image-every 0",
+                                  "run box --sequence-every 1",
+                                  "run box --size 100000x100000",
+                                  "run box --size 0x5",
+                                  "run box --size 1.5x2",
+                                  "import x.ply -o y.ply --weld nan",
+                                  "import x.ply -o y.ply --rotate 0 nan 0",
+                                  "import x.ply -o y.ply --size inf",
+                                  "import x.ply -o y.ply --iso nan",
+                                  "bench lattice --plot x.svg",
+                                  "bench sing",
+                                  "bench embed --rounds 0",
+                                  "doctor me"})
         EXPECT_EQ(palpate(arguments).status, 2) << arguments;
+    EXPECT_NE(palpate("run box --size 100000x100000").said.find("not from 1 to 16384 pixels"),
+              std::string::npos);
+    EXPECT_NE(palpate("import x.ply -o y.ply --units metre").said.find("did you mean m?"), std::string::npos);
     EXPECT_EQ(palpate("--help").status, 0);
+    const Outcome version = palpate("--version");
+    EXPECT_EQ(version.status, 0);
+    EXPECT_TRUE(version.said.starts_with("palpate ")) << version.said;
+    EXPECT_NE(version.said.find_first_of("0123456789"), std::string::npos) << version.said;
     EXPECT_EQ(palpate("run --help").status, 0);
 }
 
@@ -238,6 +274,41 @@ TEST(Command, TroubleWithOutputsIsSaid) {
                                     scratch / "null");  // a link, so that no bug can hurt the device
     EXPECT_EQ(palpate("run box --frames 1 --report " + (scratch / "null").string()).status, 0);
     EXPECT_TRUE(std::filesystem::is_symlink(scratch / "null"));
+}
+
+// What a file will hold is what its name says, and no folder is made for it.
+TEST(Command, OutputsAreWhatTheirNamesSay) {
+    Scratch scratch;
+    auto in = [&](const std::string& name) { return (scratch / name).string(); };
+    expect_one_line(palpate("run nodule --plot " + in("x.png")), {"x.png", "x.svg"});
+    expect_one_line(palpate("run box --video " + in("x.gif")), {"x.gif", "x.mp4"});
+    expect_one_line(palpate("run box --nodes " + in("x.png")), {"x.png", "x.csv"});
+    expect_one_line(palpate("run box --report " + in("x.csv")), {"x.csv", "x.json"});
+    expect_one_line(palpate("run box --sequence " + in("x.mp4")), {"x.mp4", ".glb"});
+    expect_one_line(palpate("run box --plot " + in("x.svg")), {"no tool", "[[tool]]"});
+    expect_one_line(palpate("run nodule --plot " + in("none/y.svg")), {"no folder", "none", "make it first"});
+    expect_one_line(palpate("run box --images " + in("none/deep")), {"no folder", "none"});
+    write_mesh(block(vec3(0), vec3(0.1f)), scratch / "block.obj");
+    expect_one_line(palpate("import " + in("block.obj") + " -o " + in("none/y.ply")),
+                    {"none", "make it first"});
+    expect_one_line(palpate("import " + in("block.obj") + " -o " + in("y.ply") + " --report " + in("r.csv")),
+                    {"r.csv", "r.json"});
+    expect_one_line(palpate("bench cloth --json " + in("b.csv")), {"b.csv", "b.json"});
+    if (std::filesystem::is_directory("/proc"))
+        expect_one_line(palpate("run box --report /proc/report.json"), {"/proc/report.json", "written to"});
+    EXPECT_EQ(scratch.entries(), 1u);
+    EXPECT_EQ(palpate("run box --frames 1 --report " + in("R.JSON")).status, 0);
+    EXPECT_EQ(palpate("run box --frames 1 --nodes " + in("nodes")).status, 0);  // it says nothing wrong
+}
+
+TEST(Command, OptionsThatChangeNothingAreSaid) {
+    EXPECT_NE(palpate("run box --frames 1 --lattice").said.find("note: --lattice changes nothing"),
+              std::string::npos);
+    EXPECT_NE(palpate("run box --frames 1 --size 99x99").said.find("note: --size changes nothing"),
+              std::string::npos);
+    EXPECT_NE(palpate("run box --frames 1 --force").said.find("note: --force changes nothing"),
+              std::string::npos);
+    EXPECT_EQ(palpate("run box --frames 1").said.find("note:"), std::string::npos);
 }
 
 TEST(Command, InfoNamesSizesInMetres) {

@@ -100,6 +100,37 @@ TEST(Files, MissingPlacesAreNamed) {
     EXPECT_NO_THROW(make_folder(scratch / "a" / "b"));
 }
 
+std::string refusal(const std::filesystem::path& path, const char* ending) {
+    try {
+        check_output(path, ending);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(Files, OutputsAreCheckedBeforeTheWork) {
+    Scratch scratch;
+    EXPECT_EQ(refusal(scratch / "a.svg", ".svg"), "accepted");
+    EXPECT_EQ(refusal(scratch / "A.SVG", ".svg"), "accepted");
+    EXPECT_EQ(refusal(scratch / "a", ".svg"), "accepted");
+    EXPECT_EQ(refusal(scratch / "a.b", ""), "accepted");
+    EXPECT_EQ(refusal("", ".svg"), "accepted");  // nothing is asked for
+    EXPECT_NE(refusal(scratch / "a.png", ".svg").find("a.svg"), std::string::npos);
+    EXPECT_NE(refusal(scratch / "no" / "a.svg", ".svg").find("no folder"), std::string::npos);
+    EXPECT_NE(refusal(scratch / ".", ".svg").find("a folder"), std::string::npos);
+    write_text(scratch / "old.svg", "old");
+    EXPECT_EQ(refusal(scratch / "old.svg", ".svg"), "accepted");
+    EXPECT_EQ(read_text(scratch / "old.svg"), "old");
+    std::filesystem::create_symlink("/dev/null", scratch / "device.x");
+    EXPECT_EQ(refusal(scratch / "device.x", ".svg"), "accepted");
+    std::filesystem::create_symlink(scratch / "gone", scratch / "link.svg");
+    EXPECT_NE(refusal(scratch / "link.svg", ".svg").find("nowhere"), std::string::npos);
+    if (std::filesystem::is_directory("/proc"))  // where nobody may write, not even root
+        EXPECT_NE(refusal("/proc/a.svg", ".svg").find("cannot write"), std::string::npos);
+    EXPECT_EQ(scratch.entries(), 3u);
+}
+
 TEST(Error, IsAlwaysOneLine) {
     const Error error("a\nb", "c\rd", "e\n");
     EXPECT_STREQ(error.what(), "a b in c d; e ");

@@ -5,6 +5,7 @@
 #include "palpate/base/pipe.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/write.h"
+#include "palpate/run/notes.h"
 #include "palpate/run/plot.h"
 #include "palpate/run/tip.h"
 #include "tests/scratch.h"
@@ -91,6 +92,250 @@ TEST(Run, StepsAndFramesAreCounted) {
     EXPECT_EQ(run(scene(), frames).bodies[0].steps, 0);
 }
 
+bool has_note(const Report& report, const std::string& words) {
+    return std::ranges::any_of(report.notes,
+                               [&](const std::string& note) { return note.find(words) != note.npos; });
+}
+
+// A number of steps is of exactly the step that was asked for; frames are whole ones of 1/60 s, and that is
+// said.
+TEST(Run, StepsAreAsLongAsAskedForOrItIsSaid) {
+    RunSettings settings;
+    settings.steps = 25;
+    for (const char* step : {"0.0015", "0.001", "0.0008"}) {
+        const Scene some = scene({std::string("simulation.step=") + step, "body.block.youngs_modulus=2000"});
+        const Report report = run(some, settings);
+        EXPECT_EQ(report.bodies[0].steps, 25) << step;
+        EXPECT_LE(std::abs(report.bodies[0].step / some.simulation.step - 1), 1e-15) << step;
+        EXPECT_LE(std::abs(report.simulated - 25 * some.simulation.step), 1e-12) << step;
+        EXPECT_FALSE(has_note(report, "steps were")) << step;
+    }
+    settings.steps.reset();
+    settings.frames = 2;
+    auto steps_of = [&](const char* step) {
+        return run(scene({std::string("simulation.step=") + step, "body.block.youngs_modulus=2000"}),
+                   settings);
+    };
+    EXPECT_TRUE(has_note(steps_of("0.0015"), "steps were 0.00138889 s and not 0.0015 s"));
+    EXPECT_FALSE(has_note(steps_of("0.0016666666666666668"), "steps were"));
+    EXPECT_FALSE(has_note(steps_of("\"auto\""), "steps were"));
+}
+
+// Longer frames than a film's: it goes on as fast as the scene.
+TEST(Run, LongStepsStillMakeEvenSequences) {
+    Scratch scratch;
+    RunSettings settings;
+    settings.steps = 7;
+    settings.sequence = scratch / "s.ply";
+    settings.sequence_every = 0.049;  // three frames of 1/60 s
+    const Report report =
+        run(scene({"simulation.step=0.012", "body.block.youngs_modulus=200", "tool.finger.stiffness=5"}),
+            settings);
+    EXPECT_EQ(report.frames, 7);
+    EXPECT_EQ(scratch.entries(), 2u);  // at 0 and at 0.06 s
+}
+
+std::string refusal(const Scene& scene, const RunSettings& settings) {
+    try {
+        run(scene, settings);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "done";
+}
+
+TEST(Run, OutputsAreRefusedBeforeTheWork) {
+    Scratch scratch;
+    auto expect_refused = [&](const RunSettings& settings, const std::string& words) {
+        Scene missing = scene();  // which would fail later
+        missing.bodies[0].dims.reset();
+        missing.bodies[0].surface = "no-such.ply";
+        const std::string said = refusal(missing, settings);
+        EXPECT_NE(said.find(words), std::string::npos) << said;
+    };
+    auto with = [&](std::filesystem::path RunSettings::*output, const char* name) {
+        RunSettings settings;
+        settings.*output = scratch / name;
+        return settings;
+    };
+    expect_refused(with(&RunSettings::plot, "x.png"), "name it " + (scratch / "x.svg").string());
+    expect_refused(with(&RunSettings::video, "x.gif"), "name it " + (scratch / "x.mp4").string());
+    expect_refused(with(&RunSettings::nodes, "x.png"), "name it " + (scratch / "x.csv").string());
+    expect_refused(with(&RunSettings::report, "x.csv"), "name it " + (scratch / "x.json").string());
+    expect_refused(with(&RunSettings::sequence, "x.mp4"), ".pc2");
+    expect_refused(with(&RunSettings::surface, "x.png"), ".ply");
+    for (auto output : {&RunSettings::plot, &RunSettings::nodes, &RunSettings::report, &RunSettings::surface,
+                        &RunSettings::sequence, &RunSettings::video, &RunSettings::images})
+        expect_refused(with(output, output == &RunSettings::plot      ? "no/x.svg"
+                                    : output == &RunSettings::nodes   ? "no/x.csv"
+                                    : output == &RunSettings::report  ? "no/x.json"
+                                    : output == &RunSettings::video   ? "no/x.mp4"
+                                    : output == &RunSettings::surface ? "no/x.ply"
+                                                                      : "no/x.glb"),
+                       "make it first");
+    EXPECT_EQ(scratch.entries(), 0u);
+    RunSettings both;
+    both.surface = both.sequence = scratch / "x.glb";
+    expect_refused(both, "writes a file of this name too");
+    RunSettings numbers;
+    numbers.image_every = std::nan("");
+    expect_refused(numbers, "no time between pictures");
+    numbers = {};
+    numbers.steps = -1;
+    expect_refused(numbers, "negative");
+    Scene toolless = scene();
+    toolless.tools.clear();
+    RunSettings plot;
+    plot.plot = scratch / "x.svg";
+    EXPECT_NE(refusal(toolless, plot).find("no tool whose force"), std::string::npos);
+    Scene still = scene();
+    still.bodies.clear();
+    RunSettings nodes;
+    nodes.nodes = scratch / "x.csv";
+    EXPECT_NE(refusal(still, nodes).find("no body that moves"), std::string::npos);
+}
+
+TEST(Run, WhatAnEarlierRunLeftIsSaidAndKept) {
+    Scratch scratch;
+    write_text(scratch / "s-0009.ply", "");
+    write_text(scratch / "s-0002.ply", "");  // which is written anew
+    write_text(scratch / "s-2.ply", "");     // somebody's own, as the next one
+    write_text(scratch / "s-last.ply", "");
+    RunSettings settings;
+    settings.frames = 6;
+    settings.sequence = scratch / "s.ply";
+    const Report report = run(scene(), settings);
+    EXPECT_TRUE(has_note(report, "1 older file of an earlier run stays in")) << report.notes.size();
+    EXPECT_TRUE(has_note(report, "s-0009.ply"));
+    EXPECT_EQ(read_text(scratch / "s-0009.ply"), "");
+    EXPECT_NE(read_text(scratch / "s-0002.ply"), "");
+}
+
+TEST(Run, FramesPerSecondIsNothingWhereNothingMoves) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(0.02f), 6), scratch / "ball.ply");
+    RunSettings settings;
+    settings.frames = 2;
+    settings.report = scratch / "r.json";
+    EXPECT_FALSE(run(parse_scene("[[surface]]\nsurface = \"ball.ply\"\n", "s.toml", scratch / "."), settings)
+                     .frames_per_second());
+    EXPECT_NE(read_text(settings.report).find("\"frames_per_second\": null"), std::string::npos);
+    EXPECT_GT(run(scene(), settings).frames_per_second().value(), 0);
+    settings.frames = 0;
+    EXPECT_FALSE(run(scene(), settings).frames_per_second());
+}
+
+// ---- what its user should know ----
+
+const std::string weak = R"(
+[[body]]
+name = "cube"
+dims = [4, 4, 4]
+spacing = 0.02
+density = 1000
+youngs_modulus = 3e5
+damping = 1
+link_damping = 0.002
+move = [0, 0.02, 0]
+)";
+
+Report run_for(const std::string& text, int frames) {
+    RunSettings settings;
+    settings.frames = frames;
+    return run(parse_scene(text, "test.toml", "."), settings);
+}
+
+TEST(Notes, AdviceNamesWhatActs) {
+    auto advice = [](const std::string& more) {
+        const Scene some = parse_scene(weak + more, "test.toml", ".");
+        Report report;
+        for (std::size_t t = 0; t < some.tools.size(); ++t) report.tools.emplace_back().largest_force = 1;
+        return how_to_ask_less(some, report);
+    };
+    const std::string path = "path = [[0, 0, 0, 0], [1, 0, 0.1, 0]]\n";
+    EXPECT_EQ(advice(""), "use a stiffer material: its own weight is too much for it");
+    EXPECT_EQ(advice("[[tool]]\n" + path), "press less hard");
+    EXPECT_EQ(advice("[[tool]]\nkind = \"drag\"\n" + path), "pull less hard");
+    EXPECT_EQ(advice("[[move]]\nnodes = { below = 0 }\n" + path), "move its nodes less far");
+    EXPECT_EQ(advice("[[collider]]\nplane = {}\n" + path + "[[tool]]\n" + path),
+              "press less hard or push it less far");
+    EXPECT_EQ(advice("[wind]\nvelocity = [9, 0, 0]\n"), "use a stiffer material, or less wind");
+}
+
+// A soft block that its own weight turns inside out, with a tool that is far away.
+TEST(Notes, NobodyIsToldToPressLessWhereNothingPresses) {
+    const Report report = run_for(R"(
+[[body]]
+name = "jelly"
+dims = [5, 9, 5]
+spacing = 0.02
+density = 1000
+youngs_modulus = 300
+damping = 5
+pin = { below = 0 }
+[[tool]]
+path = [[0, 9, 9, 9], [100, 9, 9, 9]]
+)",
+                                  40);
+    EXPECT_TRUE(has_note(report, "were inside out; use a stiffer material"));
+    EXPECT_FALSE(has_note(report, "press less"));
+}
+
+TEST(Notes, WhatNothingHolds) {
+    EXPECT_TRUE(has_note(run_for(weak, 1), "cube: nothing holds it, so it falls"));
+    for (const char* more :
+         {"pin = { nodes = [0] }\n", "[simulation]\ngravity = [0, 0, 0]\n", "[[collider]]\nplane = {}\n"})
+        EXPECT_FALSE(has_note(run_for(weak + more, 1), "nothing holds it")) << more;
+}
+
+TEST(Notes, AToolThatTouchesNothing) {
+    const std::string tool = "pin = { below = 0 }\n[[tool]]\nname = \"tip\"\nradius = 0.02\n";
+    EXPECT_TRUE(has_note(run_for(weak + tool + "path = [[0, 0, 1, 0], [0.1, 0, 1, 0]]\n", 8),
+                         "tip: it touched nothing all along its path"));
+    EXPECT_FALSE(
+        has_note(run_for(weak + tool + "path = [[0, 0, 1, 0], [9, 0, 1, 0]]\n", 8), "touched nothing"));
+    EXPECT_FALSE(has_note(run_for(weak + tool + "path = [[0, 0, 0.09, 0], [0.1, 0, 0.09, 0]]\n", 8),
+                          "touched nothing"));
+}
+
+// Case 15: a ball or a rod between the nodes, a plate that is thinner than a step.
+TEST(Notes, ObstaclesThatNodesPass) {
+    const std::string collider = "[[collider]]\n";
+    const Report ball =
+        run_for(weak + collider + "sphere = { centre = [0.03, -0.01, 0.03], radius = 0.01 }\n", 1);
+    EXPECT_TRUE(
+        has_note(ball, "collider 1: it is 0.02 m across, and the nodes of body cube are 0.02 m apart"));
+    EXPECT_TRUE(has_note(
+        run_for(weak + collider + "capsule = { from = [0, 0, 0], to = [1, 0, 0], radius = 0.01 }\n", 1),
+        "0.02 m across"));
+    EXPECT_TRUE(
+        has_note(run_for(weak + collider + "box = { half = [1, 0.01, 0.01] }\n", 1), "0.02 m across"));
+    for (const char* wide :
+         {"sphere = { radius = 0.1 }\n", "plane = {}\n", "box = { half = [1, 0.001, 1] }\n"})
+        EXPECT_FALSE(has_note(run_for(weak + collider + wide, 1), "across")) << wide;
+
+    // 0.2 mm and 20 mm of steel under a cube that comes with 3 m/s, and a plate of 1 mm that comes with 20
+    // m/s.
+    const std::string fall = weak + "[simulation]\ngravity = [0, -100, 0]\n" + collider;
+    const Report thin = run_for(fall + "box = { centre = [0, -0.4, 0], size = [2, 0.0002, 2] }\n", 6);
+    EXPECT_TRUE(has_note(thin, "collider 1: it is 0.0002 m thick, and nodes of body cube go up to"));
+    EXPECT_FALSE(
+        has_note(run_for(fall + "box = { centre = [0, -0.4, 0], size = [2, 0.02, 2] }\n", 6), "thick"));
+    const std::string swung =
+        weak + collider +
+        "box = { centre = [0, -0.5, 0], size = [2, 0.001, 2] }\npath = [[0, 0, 0, 0], [0.1, 0, 2, 0]]\n";
+    EXPECT_TRUE(has_note(run_for(swung, 2), "0.001 m thick"));
+}
+
+TEST(Notes, BodiesThatAreGone) {
+    // Through a ball that is finer than the lattice, and 10 times its own size down.
+    const std::string ball =
+        "[simulation]\ngravity = [0, -100, 0]\n[[collider]]\nsphere = { centre = [0.03, -0.01, 0.03], "
+        "radius = 0.005 }\n";
+    EXPECT_TRUE(has_note(run_for(weak + ball, 20), "cube: it ended"));
+    EXPECT_FALSE(has_note(run_for(weak + ball, 2), "it ended"));
+}
+
 TEST(Run, WritesWhatIsAskedFor) {
     Scratch scratch;
     RunSettings settings;
@@ -99,7 +344,7 @@ TEST(Run, WritesWhatIsAskedFor) {
     settings.height = 91;
     settings.images = scratch / "stills";
     settings.image_every = 0.5;
-    settings.report = scratch / "deep" / "report.json";
+    settings.report = settings.images / "report.json";  // in a folder that is made
     settings.plot = scratch / "plot.svg";
     settings.nodes = scratch / "nodes.csv";
     settings.surface = scratch / "surface.ply";
@@ -114,7 +359,7 @@ TEST(Run, WritesWhatIsAskedFor) {
         GTEST_SKIP() << "not available: " << error.what();
     }
     const auto files = std::filesystem::directory_iterator(settings.images);
-    EXPECT_EQ(std::distance(files, {}), 3);
+    EXPECT_EQ(std::distance(files, {}), 3 + 1);
     if (film) EXPECT_GT(std::filesystem::file_size(settings.video), 1000u);
     const std::string json = read_text(settings.report);
     for (const char* key : {"backend",

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace palpate {
@@ -113,7 +114,8 @@ TEST(Scene, WrongTypesAndValuesAreNamed) {
     expect_words(refusal(small + "[simulation]\nduration = -1\n"), {"duration"});
     expect_words(refusal(small + "damping = -1\n"), {"cube", "negative"});
     expect_words(refusal(small + "volume = \"x\"\n"), {"cube", "exactly one"});
-    expect_words(refusal(small + "stiffness = 4\n"), {"youngs_modulus or stiffness"});
+    expect_words(refusal(small + "stiffness = 4\n"),
+                 {"exactly one of youngs_modulus and stiffness", "has both", "line 8"});
     expect_words(refusal(small + small), {"second body", "cube"});
     expect_words(refusal("body = 3\n"), {"[[body]]"});
     expect_words(refusal(""), {"no body"});
@@ -129,6 +131,127 @@ TEST(Scene, WrongTypesAndValuesAreNamed) {
     expect_words(refusal(small + "pin = { radius = 1 }\n"), {"pin.near"});
     expect_words(refusal(small + "[[tool]]\nname = \"a/b\"\npath = [[0, 0, 0, 0]]\n"), {"slash"});
     expect_words(refusal(small + "[[tool]]\npath = [[0, 0, 0, 1e300]]\n"), {"world"});
+}
+
+// The refusal names the key by its path, its value, its unit, what it may be, and the line.
+TEST(Scene, EveryNumberHasItsRangeAndItsUnit) {
+    const std::string mesh = "[[body]]\nname = \"cube\"\nsurface = \"x.ply\"\n";
+    for (const auto& [key, value, words] : std::vector<std::array<std::string, 3>>{
+             {"youngs_modulus", "0", "cube.youngs_modulus is 0 Pa, which is not above 0"},
+             {"youngs_modulus", "-3", "not above 0"},
+             {"stiffness", "-1", "N/m, which is not above 0"},
+             {"density", "-1000", "cube.density is -1000 kg/m³, which is not above 0"},
+             {"mass", "0", "0 kg, which is not above 0"},
+             {"damping", "-1", "-1 1/s, which is negative"},
+             {"link_damping", "-1", "-1 s, which is negative"},
+             {"spacing", "0", "0 m, which is not above 0"},
+             {"nodes", "0", "not from 1"},
+             {"size", "-1", "-1 m, which is negative"},
+             {"faces", "-1", "negative"},
+             {"smooth", "1001", "not from 0 to 1000"},
+             {"specks", "1", "not from 0 to 0.999"},
+             {"weld", "-1", "negative"},
+             {"voxel", "-1", "negative"},
+             {"shine", "2", "not from 0 to 1"},
+             {"cage", "[0, 2, 2]", "not from 1"},
+             {"pin", "{ below = 15 }", "cube.pin.below is 15, which is not from 0 to 1"},
+             {"pin", "{ near = [0, 0, 0], radius = -1 }", "cube.pin.radius is -1 m, which is negative"},
+             {"pin", "{ nodes = [-1] }", "cube.pin.nodes is -1, which is negative"},
+             {"touch", "{ friction = -1 }", "cube.touch.friction"},
+             {"touch", "{ damping = -1 }", "N·s/m, which is negative"}})
+        expect_words(refusal(mesh + key + " = " + value + "\n"), {words, "test.toml, line 4"});
+    for (const auto& [table, value, words] : std::vector<std::array<std::string, 3>>{
+             {"[simulation]", "duration = 0", "simulation.duration is 0 s"},
+             {"[simulation]", "threads = 1000", "not from 1 to 256"},
+             {"[simulation]", "gravity = [0, 1e9, 0]", "simulation.gravity is 1e+09 m/s²"},
+             {"[camera]", "angle = 180", "degrees, which is not from"},
+             {"[light]", "colour = [200, 200, 200]", "light.colour is not from 0 to 10"},
+             {"[[collider]]", "sphere = { radius = 0 }", "collider.1.sphere.radius is 0 m"},
+             {"[[tool]]", "radius = 0", "tool.1.radius is 0 m"},
+             {"[[tool]]", "stiffness = -4", "-4 N/m, which is not above 0"}})
+        expect_words(refusal(small + table + "\n" + value + "\n"), {words, "test.toml, line 9"});
+    expect_words(refusal("[camera]\nup = [0, 0, 0]\n" + small), {"camera.up", "direction"});
+    expect_words(refusal("[light]\ndirection = [0, 0, 0]\n" + small), {"light.direction", "direction"});
+}
+
+TEST(Scene, WholeNumbersMayBeWrittenAsOthersAre) {
+    EXPECT_EQ(parse("[[body]]\nsurface = \"x.ply\"\nnodes = 2e4\nstiffness = 1\nmass = 1\n").bodies[0].nodes,
+              20'000);
+    expect_words(refusal(small + "damping = \"5\"\n"), {"\"5\"", "without quotes"});
+    expect_words(refusal(small + "name = 3\n"), {"line 8"});
+    expect_words(refusal("[[body]]\nsurface = \"x.ply\"\nnodes = 2.5\n"), {"2.5, not a whole number"});
+}
+
+TEST(Scene, DecimalCommasAreExplained) {
+    expect_words(refusal(small + "damping = 0,5  # 1/s\n"), {"line 8", "with a point: 0.5"});
+    expect_words(refusal(small + "damping = \"0,5\"\n"), {"line 8", "write 0.5"});
+    expect_words(refusal(small + "move = [0,5, 1, 0]\n"), {"a list of 4", "with points in numbers"});
+    expect_words(refusal(small, {"body.cube.damping=0,5"}), {"cube.damping", "--set", "write 0.5"});
+    expect_words(refusal(small + "[[tool]]\npath = [[0,5, 0, 0, 0]]\n"), {"row 1", "with points in numbers"});
+}
+
+TEST(Scene, ColoursOf255AreExplained) {
+    // 188 is half the light in sRGB.
+    expect_words(refusal(small + "colour = [188, 255, 0]\n"),
+                 {"cube.colour", "line 8", "[0.5, 1, 0]", "linear"});
+    expect_words(refusal(small + "colour = [-0.1, 0, 0]\n"), {"cube.colour", "from 0 to 1"});
+}
+
+TEST(Scene, OfSeveralKeysOne) {
+    expect_words(refusal(small + "mass = 1\n"), {"cube", "exactly one of density and mass",
+                                                 "both density and mass", "line 8", "remove one"});
+    EXPECT_EQ(parse(small, {"body.cube.mass=3"}).bodies[0].material.mass,
+              3);  // a change takes the other away
+    EXPECT_EQ(parse(small, {"body.cube.mass=3"}).bodies[0].material.density, 0);
+    EXPECT_EQ(parse(small, {"body.cube.stiffness=3"}).bodies[0].material.youngs_modulus, 0);
+    expect_words(refusal(small + "nodes = 100\n"), {"nodes", "line 8"});
+    const std::string mesh = "[[body]]\nname = \"it\"\nsurface = \"x.ply\"\nstiffness = 1\nmass = 1\n";
+    expect_words(refusal(mesh + "nodes = 100\nspacing = 0.1\n"), {"nodes beside spacing", "line 6"});
+    EXPECT_EQ(parse(mesh + "nodes = 100\n", {"body.it.spacing=0.01"}).bodies[0].spacing, 0.01f);
+}
+
+TEST(Scene, KeysThatBelongElsewhere) {
+    expect_words(refusal(small + "poisson = 0.45\n"), {"\"poisson\" of body.cube", "line 8", "always 1/4"});
+    expect_words(refusal("[simulation]\n" + small + "gravity = [0, 0, 0]\n"),
+                 {"did you mean simulation.gravity?"});
+    expect_words(refusal(small + "[[collider]]\nplane = {}\nradius = 1\n"), {"radius", "of collider.1"});
+    expect_words(refusal(small, {"youngs_modulus=3"}), {"did you mean body.cube.youngs_modulus?", "--set"});
+    expect_words(refusal(small, {"duration=3"}), {"did you mean simulation.duration?"});
+    expect_words(refusal(small, {"cube.nodes=3"}), {"did you mean body.cube?"});
+    expect_words(refusal(small, {"body.nodes=3"}), {"which body", "body.cube.nodes=3"});
+    expect_words(refusal(small, {"body.ball.nodes=3"}), {"no body named ball", "choose from cube"});
+    expect_words(refusal(small, {"body.cube.density=-1"}), {"body.cube.density is -1 kg/m³", "in --set"});
+    expect_words(refusal(small + "E = 3\n"), {"did you mean \"youngs_modulus\"?"});
+    expect_words(refusal(small + "mesh = \"a.stl\"\n"), {"did you mean \"surface\"?"});
+    expect_words(refusal(small + "zzz = 3\n"), {"\"zzz\"", "its keys are", "youngs_modulus"});
+    expect_words(refusal(small + "colour_map = \"\"\n"), {"cube.colour_map is empty", "line 8"});
+}
+
+// The notes of a scene in one text.
+std::string notes(const std::string& text, const std::vector<Change>& changes = {}) {
+    std::string all;
+    for (const std::string& note : parse(text, changes).notes) all += note + "\n";
+    return all;
+}
+
+TEST(Scene, UnusualNumbersAreNoted) {
+    EXPECT_EQ(notes(small), "");
+    for (const auto& [change, words] : std::vector<std::array<std::string, 2>>{
+             {"body.cube.youngs_modulus=3", "cube.youngs_modulus is 3 Pa: is its unit right?"},
+             {"body.cube.youngs_modulus=5e9", "5e+09 Pa"},
+             {"body.cube.density=1", "1 kg/m³"},
+             {"body.cube.density=1e6", "1e+06 kg/m³"},
+             {"simulation.gravity=[0,-981,0]", "simulation.gravity is -981 m/s²"},
+             {"simulation.duration=5000", "5000 s"},
+             {"body.cube.link_damping=2", "2 s"},
+             {"collider.1={plane={offset=-500}}", "-500 m"},
+             {"collider.1={sphere={radius=250}}", "250 m"}}) {
+        const std::string said = notes(small, {change});
+        EXPECT_NE(said.find(words), std::string::npos) << change << ": " << said;
+    }
+    const std::string other = "[[body]]\ncloth = [3, 3]\nspacing = 0.1\ndensity = 1000\n";
+    EXPECT_NE(notes(other).find("1000 kg/m² (line 4)"), std::string::npos) << notes(other);
+    EXPECT_EQ(notes(other, {"body.1.density=0.15"}), "");
 }
 
 // A body's keys but its name, and the words of the refusal.
@@ -169,7 +292,7 @@ rotate = [0, 90, 0]
 TEST(Scene, ClothThatDoesNotFit) {
     const std::string grid = "cloth = [3, 3]\nspacing = 0.01\n", weight = "density = 0.2\n";
     expect_body("cloth = [3, 3, 3]\n" + weight, {"cloth", "two numbers"});
-    expect_body("cloth = [0, 3]\nspacing = 1\n" + weight, {"cloth", "at least 1"});
+    expect_body("cloth = [0, 3]\nspacing = 1\n" + weight, {"flag.cloth", "not from 1"});
     expect_body("cloth = [3, 3]\n" + weight, {"cloth without spacing"});
     expect_body(grid + weight + "surface = \"x.ply\"\n", {"exactly one"});
     expect_body(grid + weight + "youngs_modulus = 10\n", {"youngs_modulus", "springs"});
@@ -181,7 +304,7 @@ TEST(Scene, ClothThatDoesNotFit) {
     expect_body(grid + weight + "links = \"cells\"\n", {"links"});
     expect_body(grid + weight + "sheet = true\n", {"sheet without a surface"});
     expect_body(grid + weight + "link_damping = -1\n", {"negative"});
-    expect_body(grid, {"density or mass"});
+    expect_body(grid, {"one of density and mass", "none", "kg/m²"});
     expect_body("surface = \"x.ply\"\nsheet = true\nspacing = 0.1\n" + weight, {"sheet", "spacing"});
     expect_body("surface = \"x.ply\"\nspacing = 0.1\nsprings = { structural = 1 }\n" + weight,
                 {"springs are for"});
@@ -209,7 +332,7 @@ youngs_modulus = 20000
     expect_words(refusal(region + "factor = 2\n"), {"cube", "region", "line 8", "which nodes"});
     expect_words(refusal(region + "near = [0, 0, 0]\n"), {"exactly one of", "factor"});
     expect_words(refusal(region + "near = [0, 0, 0]\nfactor = 2\nstiffness = 3\n"), {"exactly one of"});
-    expect_words(refusal(region + "near = [0, 0, 0]\nfactor = -2\n"), {"factor", "above zero"});
+    expect_words(refusal(region + "near = [0, 0, 0]\nfactor = -2\n"), {"factor", "not above 0"});
     expect_words(refusal(region + "labels = \"x.nii\"\nfactor = 2\n"), {"labels and label"});
     expect_words(refusal(region + "label = 3\nnodes = [0]\nfactor = 2\n"), {"labels and label"});
     expect_words(refusal(region + "radius = 3\nnodes = [0]\nfactor = 2\n"), {"radius without near"});
@@ -234,7 +357,7 @@ TEST(Scene, MapsAndShade) {
     EXPECT_EQ(parse(cow + "weave = [60, 40]\n").bodies[0].weave, ivec2(60, 40));
     expect_words(refusal(cow + "color_map = \"cow.png\"\n"), {"color_map", "\"colour_map\"", "line 6"});
     expect_words(refusal(cow + "shade = \"normal\"\n"), {"normal", "colour, normals"});
-    expect_words(refusal(cow + "weave = [0, 40]\n"), {"body cow", "1 to 128"});
+    expect_words(refusal(cow + "weave = [0, 40]\n"), {"body.cow.weave", "1 to 128"});
     expect_words(refusal(cow + "weave = [2, 4]\nnormal_map = \"hair.png\"\n"), {"weave", "normal_map"});
     const std::string map = "colour_map = \"cow.png\"\n";
     expect_words(refusal(cow + map + "faces = 500\n"), {"body cow", "faces", "texture coordinates"});
@@ -259,7 +382,7 @@ TEST(Scene, WindAndAir) {
     EXPECT_EQ(position(gusts.wind, 1.5), vec3(4, 0, 0));
     const Scene both = parse(small + "[wind]\nvelocity = [3, 0, 0]\n[simulation]\nair = 2\n");
     EXPECT_EQ(both.simulation.air, 2);
-    expect_words(refusal(small + "[wind]\n"), {"line 8", "velocity or a path"});
+    expect_words(refusal(small + "[wind]\n"), {"line 8", "velocity and path"});
     expect_words(refusal(small + "[wind]\nvelocity = 3\n"), {"velocity", "three numbers"});
     expect_words(refusal(small + "[wind]\nvelocity = [1, 0, 0]\npath = [[0, 1, 0, 0]]\n"), {"one of them"});
     expect_words(refusal(small + "[wind]\nvelocity = [1, 0, 0]\ndensity = 1\n[simulation]\nair = 1\n"),
@@ -311,15 +434,15 @@ TEST(Scene, CollidersThatDoNotFit) {
     auto refuse = [&](const std::string& keys, std::initializer_list<std::string> words) {
         expect_words(refusal(small + "[[collider]]\n" + keys + "\n"), words);
     };
-    refuse("capsule = { radius = 0 }", {"collider 1", "line 8", "capsule", "radius"});
+    refuse("capsule = { radius = 0 }", {"collider.1.capsule.radius is 0 m", "line 9"});
     refuse("capsule = { form = 3 }", {"\"form\"", "\"from\""});
     refuse("sphere = { radius = -1 }", {"sphere"});
     refuse("plane = { normal = [0, 0, 0] }", {"plane", "zero"});
-    refuse("box = { centre = [0, 0, 0] }", {"half or size"});
-    refuse("box = { half = [1, 1, 1], size = [1, 1, 1] }", {"half or size"});
+    refuse("box = { centre = [0, 0, 0] }", {"half and size"});
+    refuse("box = { half = [1, 1, 1], size = [1, 1, 1] }", {"half and size"});
     refuse("box = { half = [1, 0, 1] }", {"box", "above zero"});
     refuse("box = { half = [1, 1, 1], rounding = -0.1 }", {"rounding"});
-    refuse("polygon = {}", {"surface or triangles"});
+    refuse("polygon = {}", {"surface and triangles"});
     refuse("polygon = { triangles = [] }", {"without a triangle"});
     refuse("polygon = { triangles = [[[0, 0, 0], [1, 0, 0]]] }", {"three corners"});
     refuse("polygon = { triangles = [[[0, 0, 0], [1, 0, 0], [2, 0, 0]]] }", {"no area"});
@@ -484,6 +607,18 @@ TEST(Path, FromAFile) {
                "\xef\xbb\xbf"
                "0,1,2,3\n");
     EXPECT_EQ(read_path(scratch / "mark.csv").size(), 1u);
+    // As a spreadsheet writes it where commas are decimal.
+    for (const char* text : {"t;x;y;z\n0;0;0;0\n2;1,5;0;-0,1\n", "0\t0\t0\t0\n2\t1,5\t0\t-0.1\n"}) {
+        write_text(scratch / "comma.csv", text);
+        EXPECT_EQ(read_path(scratch / "comma.csv").at(1).position, vec3(1.5f, 0, -0.1f)) << text;
+    }
+    try {
+        write_text(scratch / "mixed.csv", "0,0,0,0\n1,0,5,0,1,0\n");
+        read_path(scratch / "mixed.csv");
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        expect_words(error.what(), {"mixed.csv", "line 2", "semicolons"});
+    }
     for (const char* bad : {"", "t,x,y,z\n", "0,0,0\n", "0,0,0,nan\n", "0,0,0,0\n0,0,0,0\n", "0,0,0,0x\n",
                             "0,0.04,0.2,O.04\n1,0,0,0\n", "0,0,0,1e300\n", "0,0,0,0\nt,x,y,z"}) {
         write_text(scratch / "bad.csv", bad);

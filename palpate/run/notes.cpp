@@ -1,0 +1,208 @@
+#include "palpate/run/notes.h"
+
+#include "palpate/run/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+bool has(const Scene& scene, ToolKind kind) {
+    return std::ranges::any_of(scene.tools, [&](const ToolRecipe& tool) { return tool.kind == kind; });
+}
+
+// ---- obstacles ----
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+// Half the sides of an obstacle's box, the smallest first.
+vec3 half_sides(const Plane&) { return vec3(infinite); }
+vec3 half_sides(const Sphere& sphere) { return vec3(sphere.radius); }
+vec3 half_sides(const Capsule& capsule) {
+    const float long_side = capsule.radius + 0.5f * glm::distance(capsule.from, capsule.to);
+    return {capsule.radius, capsule.radius, long_side};
+}
+vec3 half_sides(const Box& box) { return box.half + box.rounding; }
+vec3 half_sides(const Polygon& polygon) {
+    Bounds box;
+    for (const auto& corners : polygon.triangles)
+        for (vec3 p : corners) box.include(p);
+    return 0.5f * box.size();
+}
+// It reaches three cells beyond its mesh.
+vec3 half_sides(const DistanceField& field) { return 0.5f * field.spacing * vec3(field.dims - 7); }
+
+vec3 half_sides(const Collider& collider) {
+    vec3 half =
+        std::visit([](const auto& shape) { return half_sides(shape); }, collider.shape) + collider.margin;
+    std::sort(&half.x, &half.x + 3);
+    return half;
+}
+
+// How fast any point of a collider goes at most, m/s.
+float fastest(const Path& path, float reach) {
+    float speed = 0;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const float seconds = float(path[i].time - path[i - 1].time);
+        const float way = glm::distance(path[i].position, path[i - 1].position);
+        const float turned = glm::length(glm::radians(path[i].rotation - path[i - 1].rotation));
+        speed = std::max(speed, (way + turned * reach) / seconds);
+    }
+    return speed;
+}
+
+// A node that goes further in one step than half an obstacle's thickness can come out on its other side.
+// Planes have no other side, and polygons look at the whole way of a step.
+void look_at_thin_obstacles(const Scene& scene, const Models& made, const Report& report,
+                            std::vector<std::string>& notes) {
+    for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c) {
+        const Collider& collider = made.simulation.colliders[c];
+        if (std::holds_alternative<Plane>(collider.shape) || std::holds_alternative<Polygon>(collider.shape))
+            continue;
+        const vec3 half = half_sides(collider);
+        const double own = fastest(scene.colliders[c].path, half.z);
+        for (std::size_t m = 0; m < made.models.size(); ++m) {
+            const Report::Body& body = report.bodies[m];
+            const double way = (body.largest_speed + own) * body.step;
+            if (!(way > half.x)) continue;
+            notes.push_back(fmt::format(
+                "collider {}: it is {:.3g} m thick, and nodes of body {} go up to {:.3g} m/s against "
+                "it, {:.3g} m in a step of {:.3g} s, so they may pass through in one step; make it "
+                "thicker, or use a polygon or a plane",
+                c + 1, 2 * half.x, body.name, body.largest_speed + own, way, body.step));
+        }
+    }
+}
+
+// ---- what bodies do ----
+
+bool is_moved(const Models& made, std::size_t body) {
+    return std::ranges::any_of(made.moves, [&](const MovedNodes& moved) { return moved.body == body; });
+}
+
+bool is_held(const Scene& scene, const Models& made, std::size_t body) {
+    const std::vector<float>& inverse = made.models[body].body.inverse_mass;
+    return std::ranges::any_of(inverse, [](float one) { return !(one > 0); }) || !scene.colliders.empty() ||
+           has(scene, ToolKind::drag) || glm::length(scene.simulation.gravity) == 0;
+}
+
+dvec3 middle(std::span<const vec3> points) {
+    dvec3 sum(0);
+    for (vec3 p : points) sum += dvec3(p);
+    return sum / double(std::max<std::size_t>(points.size(), 1));
+}
+
+// Bodies that ended far from where they began, though something should have held them.
+void look_for_lost_bodies(const Scene& scene, const Models& made, const Play& play,
+                          std::vector<std::string>& notes) {
+    constexpr double far = 10;  // of its own size
+    if (scene.colliders.empty() || glm::length(scene.simulation.gravity) == 0) return;
+    for (std::size_t m = 0; m < made.models.size(); ++m) {
+        const Body& body = made.models[m].body;
+        if (!is_held(scene, made, m) || is_moved(made, m)) continue;
+        Bounds box;
+        for (vec3 p : body.positions) box.include(p);
+        const double size = glm::length(box.size());
+        const double way = glm::distance(middle(play.nodes(m).positions), middle(body.positions));
+        if (way > far * size && size > 0)
+            notes.push_back(
+                fmt::format("body {}: it ended {:.3g} m from where it began, {:.0f} times its size; "
+                            "did it pass what should hold it?",
+                            body.name, way, way / size));
+    }
+}
+
+void look_at_tools(const Scene& scene, const Report& report, std::vector<std::string>& notes) {
+    for (std::size_t t = 0; t < scene.tools.size(); ++t) {
+        const ToolRecipe& tool = scene.tools[t];
+        const Report::Tool& did = report.tools[t];
+        const bool went_all_its_way = !tool.path.empty() && report.simulated >= tool.path.back().time;
+        if (tool.kind == ToolKind::drag || !went_all_its_way || did.largest_force > 0) continue;
+        notes.push_back(
+            fmt::format("tool {}: it touched nothing all along its path; change its path or its radius, "
+                        "and check that both are in m",
+                        tool.name));
+    }
+}
+
+void look_at_steps(const Scene& scene, const Report& report, std::vector<std::string>& notes) {
+    const double asked = scene.simulation.step;
+    for (const Report::Body& body : report.bodies) {
+        if (!(asked > 0) || body.steps == 0 || std::abs(body.step / asked - 1) < 1e-6) continue;
+        notes.push_back(
+            fmt::format("steps were {:.6g} s and not {:.6g} s, so that whole ones fill a frame of 1/60 s; "
+                        "ask for a number of steps to have them exactly",
+                        body.step, asked));
+        return;  // for all bodies alike
+    }
+}
+
+}  // namespace
+
+std::string how_to_ask_less(const Scene& scene, const Report& report) {
+    std::string less;
+    auto add = [&](const char* what) { less += (less.empty() ? "" : " or ") + std::string(what); };
+    bool presses = false, drags = false;
+    for (std::size_t t = 0; t < scene.tools.size() && t < report.tools.size(); ++t) {
+        const bool acts = report.tools[t].largest_force > 0;
+        presses |= acts && scene.tools[t].kind == ToolKind::press;
+        drags |= acts && scene.tools[t].kind == ToolKind::drag;
+    }
+    if (presses) add("press less hard");
+    if (drags) add("pull less hard");
+    if (!scene.moves.empty()) add("move its nodes less far");
+    const bool collides =
+        std::ranges::any_of(scene.colliders, [](const ColliderRecipe& one) { return !one.path.empty(); });
+    if (collides) add("push it less far");
+    if (!less.empty()) return less;
+    if (!scene.wind.empty()) return "use a stiffer material, or less wind";
+    return "use a stiffer material: its own weight is too much for it";
+}
+
+std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
+    constexpr float widest_gap = 0.7f;  // of the spacing: half the way across a square of nodes
+    std::vector<std::string> notes;
+    for (std::size_t m = 0; m < made.models.size(); ++m) {
+        const Body& body = made.models[m].body;
+        if (!is_held(scene, made, m))
+            notes.push_back(
+                fmt::format("body {}: nothing holds it, so it falls; give it a pin, or the scene a collider, "
+                            "or no gravity",
+                            body.name));
+        for (const ToolRecipe& tool : scene.tools)
+            if (tool.kind == ToolKind::press && tool.radius < widest_gap * body.spacing)
+                notes.push_back(
+                    fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
+                                "between the nodes; use more nodes",
+                                tool.name, body.name));
+        for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c)
+            if (const float across = half_sides(made.simulation.colliders[c]).y;
+                body.count() > 1 && across < widest_gap * body.spacing)
+                notes.push_back(
+                    fmt::format("collider {}: it is {:.3g} m across, and the nodes of body {} are {:.3g} m "
+                                "apart, so it may pass between them; make it larger, or use more nodes",
+                                c + 1, 2 * across, body.name, body.spacing));
+    }
+    return notes;
+}
+
+std::vector<std::string> notes_after(const Scene& scene, const Models& made, const Report& report,
+                                     const Play& play) {
+    std::vector<std::string> notes;
+    for (const Report::Body& body : report.bodies)
+        if (body.inverted_cells > 0)
+            notes.push_back(
+                fmt::format("body {}: up to {} of {} cells were inside out; {}, or use more nodes", body.name,
+                            body.inverted_cells, body.cells, how_to_ask_less(scene, report)));
+    look_for_lost_bodies(scene, made, play, notes);
+    look_at_tools(scene, report, notes);
+    look_at_thin_obstacles(scene, made, report, notes);
+    look_at_steps(scene, report, notes);
+    return notes;
+}
+
+}  // namespace palpate

@@ -1,0 +1,92 @@
+#include "palpate/scene/thin_walls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+// A place of the surface, and as much of it as it stands for.
+struct PlaceOnWall {
+    vec3 from, inward;
+    float area;  // m²
+};
+
+// Places all over a surface, about a spacing apart.
+std::vector<PlaceOnWall> places_on(const Mesh& mesh, float spacing) {
+    constexpr int most_rows = 16;  // of cells in a triangle
+    std::vector<PlaceOnWall> places;
+    for (uvec3 t : mesh.triangles) {
+        const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        const vec3 across = glm::cross(b - a, c - a);
+        const float area = 0.5f * glm::length(across);
+        if (!(area > 0)) continue;
+        const int rows = std::clamp(int(std::sqrt(area) / spacing), 1, most_rows);
+        for (int i = 0; i < rows; ++i)
+            for (int j = 0; j < rows - i; ++j)
+                for (float corner : {1 / 3.0f, 2 / 3.0f}) {  // the middles of a cell's two halves
+                    const float u = (float(i) + corner) / float(rows), v = (float(j) + corner) / float(rows);
+                    if (u + v >= 1) continue;
+                    places.push_back(
+                        {a + u * (b - a) + v * (c - a), -glm::normalize(across), area / float(rows * rows)});
+                }
+    }
+    return places;
+}
+
+double area_of(const std::vector<PlaceOnWall>& places) {
+    double sum = 0;
+    for (const PlaceOnWall& place : places) sum += place.area;
+    return sum;
+}
+
+// How far it is from `from` along the unit vector `along` to a mesh, m; nothing if it lies elsewhere.
+std::optional<float> way_to(const Mesh& mesh, dvec3 from, dvec3 along) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (uvec3 t : mesh.triangles) {
+        const dvec3 a = mesh.positions[t.x], ab = dvec3(mesh.positions[t.y]) - a,
+                    ac = dvec3(mesh.positions[t.z]) - a;
+        const dvec3 across = glm::cross(along, ac);
+        const double area = glm::dot(ab, across);
+        if (area == 0) continue;  // it runs beside the triangle
+        const double u = glm::dot(from - a, across) / area;
+        const double v = glm::dot(along, glm::cross(from - a, ab)) / area;
+        const double way = glm::dot(ac, glm::cross(from - a, ab)) / area;
+        if (u >= 0 && v >= 0 && u + v <= 1 && way > 0) nearest = std::min(nearest, way);
+    }
+    return std::isinf(nearest) ? std::nullopt : std::optional(float(nearest));
+}
+
+}  // namespace
+
+std::optional<ThinWalls> thin_walls(const Mesh& mesh, const DistanceField& field) {
+    constexpr std::size_t most_meetings = 20'000'000;  // of lines across and triangles: about a second
+    const float spacing = field.spacing;
+    std::vector<PlaceOnWall> places = places_on(mesh, spacing);
+    const double all = area_of(places);
+    // Half a spacing deep, the field of a thick wall says so.
+    std::erase_if(places, [&](const PlaceOnWall& place) {
+        return field.at(place.from + 0.5f * spacing * place.inward) < -0.25f * spacing;
+    });
+    // Beside an edge a thick body seems thin as well: what lies across decides.
+    float thinnest = std::numeric_limits<float>::infinity();
+    double looked_at = 0, thin = 0;
+    const std::size_t lines =
+        std::clamp<std::size_t>(most_meetings / std::max<std::size_t>(mesh.triangles.size(), 1), 10, 200);
+    for (std::size_t i = 0; i < places.size(); i += places.size() / lines + 1) {
+        const auto& [from, inward, area] = places[i];
+        const float slack = 1e-3f * spacing;  // off the place's own triangle
+        const auto way = way_to(mesh, from + slack * inward, inward);
+        looked_at += area;
+        if (!way || *way + slack > 1.5f * spacing) continue;
+        thin += area;
+        thinnest = std::min(thinnest, *way + slack);
+    }
+    const double share = looked_at > 0 ? area_of(places) / all * thin / looked_at : 0;
+    if (!(share > 0.01)) return std::nullopt;
+    return ThinWalls{float(share), thinnest, thinnest / 4};
+}
+
+}  // namespace palpate

@@ -1,0 +1,127 @@
+#include "palpate/solver/short_steps.h"
+
+#include "palpate/solver/stability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace palpate {
+namespace {
+
+constexpr double uneven = 4;      // times the median: beyond that a node or a spring is the odd one
+constexpr double worth_it = 1.5;  // times as long: less is not what shortens steps
+
+// All that a step's length depends on.
+struct Causes {
+    Integrator integrator;
+    double frequency;              // rad/s, of the body alone
+    double damping, link_damping;  // 1/s, s
+    float contact, pull;           // Pa/m, N/m
+};
+
+double step_of(const Body& body, const Causes& causes) {
+    const double touched = touched_frequency(body, causes.frequency, causes.contact, causes.pull);
+    return automatic_step(causes.integrator, touched, causes.damping, causes.link_damping);
+}
+
+template <class T>
+T median(std::vector<T> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// The same body with no node much lighter than most; and how many were.
+std::pair<Body, std::size_t> without_light_nodes(Body body) {
+    std::vector<float> free;
+    for (float inverse : body.inverse_mass)
+        if (inverse > 0) free.push_back(inverse);
+    const float most = float(uneven) * median(free);
+    for (float& inverse : body.inverse_mass) inverse = std::min(inverse, most);
+    return {std::move(body), std::size_t(std::ranges::count_if(free, [&](float one) { return one > most; }))};
+}
+
+// The same body with no spring much stiffer than most.
+Body without_stiff_springs(Body body) {
+    Table springs = table(body);
+    std::vector<float> all;
+    for (const Tie& tie : springs.ties)
+        if (tie.to >= 0 && tie.share * tie.stiffness > 0) all.push_back(tie.share * tie.stiffness);
+    const float most = float(uneven) * median(all);
+    for (Tie& tie : springs.ties)
+        if (tie.share * tie.stiffness > most) tie.share = most / tie.stiffness;
+    body.springs = std::move(springs);
+    return body;
+}
+
+struct Candidate {
+    std::string remedy;
+    std::function<void(Causes&)> leave_out;
+};
+
+std::vector<Candidate> candidates(const Body& body, const Simulation& simulation) {
+    std::vector<Candidate> all;
+    if (body.link_damping > 0)
+        all.push_back({fmt::format("lower link_damping = {:.3g} s", body.link_damping),
+                       [](Causes& c) { c.link_damping = 0; }});
+    if (body.damping > 0)
+        all.push_back(
+            {fmt::format("lower damping = {:.3g} 1/s", body.damping), [](Causes& c) { c.damping = 0; }});
+    if (simulation.contact > 0)
+        all.push_back({"use softer or wider tools that press", [](Causes& c) { c.contact = 0; }});
+    if (simulation.pull > 0) all.push_back({"use softer tools that drag", [](Causes& c) { c.pull = 0; }});
+    if (simulation.integrator != Integrator::verlet)
+        all.push_back({"choose verlet", [](Causes& c) { c.integrator = Integrator::verlet; }});
+    if (const auto [even, light] = without_light_nodes(body); light > 0)
+        all.push_back(
+            {fmt::format("make its nodes weigh more alike ({} of {} weigh less than a quarter of the "
+                         "median; of a sheet, weld or simplify the surface)",
+                         light, body.count()),
+             [frequency = highest_frequency(even)](Causes& c) {
+                 c.frequency = std::min(c.frequency, frequency);
+             }});
+    all.push_back({"make its stiffest springs or regions softer",
+                   [frequency = highest_frequency(without_stiff_springs(body))](Causes& c) {
+                       c.frequency = std::min(c.frequency, frequency);
+                   }});
+    return all;
+}
+
+}  // namespace
+
+std::string how_to_lengthen_steps(const Body& body, const Simulation& simulation, double frequency,
+                                  double wanted) {
+    std::vector<Candidate> left = candidates(body, simulation);
+    Causes causes{simulation.integrator, frequency,          body.damping,
+                  body.link_damping,     simulation.contact, simulation.pull};
+    double step = step_of(body, causes);
+    std::string advice;
+    while (step < wanted) {
+        const Candidate* best = nullptr;
+        double longest = worth_it * step;
+        for (const Candidate& one : left) {
+            Causes without = causes;
+            one.leave_out(without);
+            if (const double longer = step_of(body, without); longer > longest) {
+                longest = longer;
+                best = &one;
+            }
+        }
+        if (!best) break;
+        best->leave_out(causes);
+        step = longest;
+        advice += fmt::format("{}{}: without that {:.0f} steps would do", advice.empty() ? "" : "; and ",
+                              best->remedy, std::ceil(simulation.frame / step));
+        left.erase(left.begin() + (best - left.data()));
+    }
+    if (step < wanted)
+        advice += std::string(advice.empty() ? "" : "; and ") +
+                  "use a softer material, a larger spacing or a heavier body, and check its units";
+    return advice;
+}
+
+}  // namespace palpate
