@@ -81,7 +81,9 @@ void add_import(CLI::App& app) {
         ->add_option("--iso", recipe.iso,
                      "value at a volume's surface, half-integer for integer volumes [as its values suggest]")
         ->check(number_that("a number", [](double) { return true; }));
-    command->add_flag("--largest", recipe.largest, "keep only the largest connected part");
+    command->add_flag(
+        "--largest", recipe.largest,
+        "keep only the largest part by volume, where those that touch, overlap or lie in each other are one");
     command->add_option("--smooth", recipe.smooth, "passes of smoothing [10 for a volume, 0 for a mesh]")
         ->check(from_to(0, 1000));
     command->add_option("--faces", recipe.faces, "simplify to about so many faces")->check(zero_or_more());

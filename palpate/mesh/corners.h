@@ -101,6 +101,12 @@ inline bool is_flat(const Mesh& mesh, uvec3 t) {
     return glm::length(glm::cross(ab, ac)) <= 1e-6 * longest;
 }
 
+/// The area of a face, m².
+inline double face_area(const Mesh& mesh, uvec3 t) {
+    const dvec3 a(mesh.positions[t.x]);
+    return 0.5 * glm::length(glm::cross(dvec3(mesh.positions[t.y]) - a, dvec3(mesh.positions[t.z]) - a));
+}
+
 /// Drops what no longer fits when vertices or positions change.
 inline void drop_attributes(Mesh& mesh) {
     mesh.normals.clear();

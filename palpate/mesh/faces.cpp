@@ -2,20 +2,13 @@
 #include "palpate/mesh/repair.h"
 
 #include <array>
-#include <unordered_map>
-#include <unordered_set>
+#include <span>
 #include <utility>
 
 namespace palpate {
 namespace {
 
 bool is_collapsed(uvec3 t) { return t.x == t.y || t.y == t.z || t.z == t.x; }
-
-struct Hash {
-    std::size_t operator()(uvec3 t) const {
-        return ((std::uint64_t(t.x) << 32 | t.y) * 0x9e3779b97f4a7c15u ^ t.z) * 0xbf58476d1ce4e5b9u >> 16;
-    }
-};
 
 // The same face begun at its lowest corner.
 uvec3 lowest_first(uvec3 t) {
@@ -28,10 +21,43 @@ uvec3 ascending(uvec3 t) {
     return t.y < t.z ? t : uvec3(t.x, t.z, t.y);
 }
 
+// Calls f(faces) for all faces of the same key, in rising order: key by key. A key's first vertex is its
+// lowest.
+template <class F>
+void for_each_alike(const Mesh& mesh, uvec3 (*key)(uvec3), F f) {
+    std::vector<Index> first(mesh.positions.size() + 1), order(mesh.triangles.size());
+    for (uvec3 t : mesh.triangles) ++first[std::size_t(std::min({t.x, t.y, t.z})) + 1];
+    for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+    std::vector<Index> place(first.begin(), first.end() - 1);
+    for (Index face = 0; face < order.size(); ++face) {
+        const uvec3 t = mesh.triangles[face];
+        order[place[std::min({t.x, t.y, t.z})]++] = face;
+    }
+    auto less = [&](Index a, Index b) {
+        const uvec3 s = key(mesh.triangles[a]), t = key(mesh.triangles[b]);
+        return s.y != t.y ? s.y < t.y : s.z != t.z ? s.z < t.z : a < b;
+    };
+    for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+        const auto begin = order.begin() + first[v], end = order.begin() + first[v + 1];
+        std::sort(begin, end, less);
+        for (auto from = begin; from != end;) {
+            const auto to = std::find_if(from, end, [&](Index face) {
+                return key(mesh.triangles[face]) != key(mesh.triangles[*from]);
+            });
+            f(std::span<const Index>(from, to));
+            from = to;
+        }
+    }
+}
+
 // Removes the faces for which `drop` is true.
 void drop_faces(Mesh& mesh, const std::vector<char>& drop) {
     std::size_t face = 0;
     std::erase_if(mesh.triangles, [&](uvec3) { return drop[face++]; });
+}
+
+std::size_t count(const std::vector<char>& drop) {
+    return std::size_t(std::count(drop.begin(), drop.end(), true));
 }
 
 // Mends flat faces, each of them with only its neighbours, so that within a pass none that has changed is
@@ -142,37 +168,41 @@ std::size_t drop_unused(Mesh& mesh) {
 }
 
 std::size_t drop_collapsed(Mesh& mesh) {
-    std::unordered_set<uvec3, Hash> seen(mesh.triangles.size());
-    const std::size_t went = std::erase_if(
-        mesh.triangles, [&](uvec3 t) { return is_collapsed(t) || !seen.insert(lowest_first(t)).second; });
+    std::vector<char> drop(mesh.triangles.size());
+    for_each_alike(mesh, lowest_first, [&](std::span<const Index> same) {
+        for (Index face : same) drop[face] = face != same[0] || is_collapsed(mesh.triangles[face]);
+    });
+    drop_faces(mesh, drop);
     drop_unused(mesh);
-    return went;
+    return count(drop);
 }
 
 std::size_t drop_copies(Mesh& mesh) {
-    std::unordered_set<uvec3, Hash> seen(mesh.triangles.size());
-    return std::erase_if(mesh.triangles, [&](uvec3 t) { return !seen.insert(ascending(t)).second; });
+    std::vector<char> drop(mesh.triangles.size());
+    for_each_alike(mesh, ascending, [&](std::span<const Index> same) {
+        for (Index face : same) drop[face] = face != same[0];
+    });
+    drop_faces(mesh, drop);
+    return count(drop);
 }
 
 std::size_t drop_flaps(Mesh& mesh) {
-    std::unordered_map<uvec3, Index, Hash> last;  // of the faces with these corners that have no back yet
-    last.reserve(mesh.triangles.size());
-    std::vector<Index> before(mesh.triangles.size());  // and the one before it
     std::vector<char> drop(mesh.triangles.size());
-    std::size_t went = 0;
-    for (Index face = 0; face < mesh.triangles.size(); ++face) {
-        const uvec3 t = lowest_first(mesh.triangles[face]);
-        Index& open = last.try_emplace(ascending(t), none).first->second;
-        if (open != none && lowest_first(mesh.triangles[open]) != t) {
-            drop[face] = drop[open] = true;
-            open = before[open];
-            went += 2;
-        } else {
-            before[face] = std::exchange(open, face);
+    std::vector<Index> open;  // of the faces with these corners those that have no back yet
+    for_each_alike(mesh, ascending, [&](std::span<const Index> same) {
+        open.clear();
+        for (Index face : same) {
+            if (open.empty() ||
+                lowest_first(mesh.triangles[open.back()]) == lowest_first(mesh.triangles[face])) {
+                open.push_back(face);
+                continue;
+            }
+            drop[face] = drop[open.back()] = true;
+            open.pop_back();
         }
-    }
+    });
     drop_faces(mesh, drop);
-    return went;
+    return count(drop);
 }
 
 std::size_t drop_flat_faces(Mesh& mesh) {

@@ -1,7 +1,7 @@
 #include "palpate/mesh/intersections.h"
 
+#include "palpate/mesh/face_pairs.h"
 #include "palpate/mesh/repair.h"
-#include "palpate/mesh/tree.h"
 
 #include <array>
 #include <cmath>
@@ -68,10 +68,6 @@ bool cut(const Triangle& a, const Triangle& b, double touch) {
            (!one_side_only(of_b) && any_side_passes(b, of_b, a, touch));
 }
 
-bool apart(const Tree::Node& a, const Tree::Node& b) {
-    return glm::any(glm::greaterThan(a.low, b.high)) || glm::any(glm::greaterThan(b.low, a.high));
-}
-
 // Whether all faces of two nodes lie in one plane, where none can cut another.
 bool in_one_plane(const Tree::Plate& a, const Tree::Plate& b, double touch) {
     if (!(a.thickness + b.thickness <= touch)) return false;
@@ -103,6 +99,8 @@ std::size_t count_faces(const Intersections& found) {
 
 }  // namespace
 
+std::size_t most_looks_at(const Mesh& mesh) { return 10'000'000 + 100 * mesh.triangles.size(); }
+
 Intersections intersections(const Mesh& mesh, std::size_t most) {
     const Tree tree(mesh);
     Intersections found;
@@ -115,36 +113,17 @@ Intersections intersections(const Mesh& mesh, std::size_t most) {
 
     const std::vector<Tree::Plate> plates = tree.plates();
     std::size_t looks = 0;
-    const std::size_t most_looks = 10'000'000 + 100 * mesh.triangles.size();
-    std::vector<uvec2> waiting = {{0, 0}};  // pairs of nodes; a node with itself: all within it
-    while (!waiting.empty()) {
-        const uvec2 pair = waiting.back();
-        waiting.pop_back();
-        const Tree::Node &a = tree.nodes[pair.x], &b = tree.nodes[pair.y];
-        if (apart(a, b) || in_one_plane(plates[pair.x], plates[pair.y], touch)) continue;
-        if (pair.x == pair.y && a.second != 0) {
-            const Index first = pair.x + 1;
-            waiting.insert(waiting.end(), {{first, first}, {a.second, a.second}, {first, a.second}});
-            continue;
-        }
-        if (a.second != 0 && (b.second == 0 || a.count >= b.count)) {
-            waiting.insert(waiting.end(), {{pair.x + 1, pair.y}, {a.second, pair.y}});
-            continue;
-        }
-        if (b.second != 0) {
-            waiting.insert(waiting.end(), {{pair.x, pair.y + 1}, {pair.x, b.second}});
-            continue;
-        }
-        for (Index i = a.first; i < a.first + a.count; ++i)
-            for (Index j = pair.x == pair.y ? i + 1 : b.first; j < b.first + b.count; ++j)
+    const std::size_t most_looks = most_looks_at(mesh);
+    found.all = for_each_pair_of_leaves(
+        tree, 0, [&](Index a, Index b) { return in_one_plane(plates[a], plates[b], touch); },
+        [&](Index a, Index b) {
+            for_each_pair_of_faces(tree, a, b, [&](Index i, Index j) {
                 if (cut(triangles[i], triangles[j], touch))
                     found.faces.push_back({tree.faces[i], tree.faces[j]});
-        looks += std::size_t(a.count) * b.count;
-        if (looks > most_looks || found.faces.size() >= most) {
-            found.all = false;
-            break;
-        }
-    }
+            });
+            looks += std::size_t(tree.nodes[a].count) * tree.nodes[b].count;
+            return looks <= most_looks && found.faces.size() < most;
+        });
     return found;
 }
 

@@ -17,6 +17,9 @@ struct Intersections {
 /// only great bundles of long thin faces need.
 Intersections intersections(const Mesh& mesh, std::size_t most = 1'000'000);
 
+/// How many pairs of faces a search of this kind looks at before it gives up.
+std::size_t most_looks_at(const Mesh& mesh);
+
 /// Where few faces cut through each other, removes those with a ring around them and closes the holes, a few
 /// times over. Returns how many faces were removed; 0, and the mesh as it was, if that does not help.
 /// The mesh must be closed.

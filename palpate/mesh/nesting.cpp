@@ -109,7 +109,7 @@ std::size_t drop_nested(Mesh& mesh) {
     const Parts part = parts(mesh);
     if (part.count < 2) return 0;
     std::size_t crossing = 0;
-    return keep_parts(mesh, part, part_inside_from_outside(mesh, part, crossing));
+    return keep_parts(mesh, part, part_inside_from_outside(mesh, part, crossing)).parts;
 }
 
 Nesting nesting(const Mesh& mesh) {

@@ -2,17 +2,10 @@
 
 #include "palpate/mesh/repair.h"
 
+#include <cmath>
+#include <numeric>
+
 namespace palpate {
-namespace {
-
-std::vector<Bounds> boxes(const Mesh& mesh, const Parts& parts) {
-    std::vector<Bounds> box(parts.count);
-    for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
-        for (int k = 0; k < 3; ++k) box[parts.of[face]].include(mesh.positions[mesh.triangles[face][k]]);
-    return box;
-}
-
-}  // namespace
 
 Parts parts(const Mesh& mesh) {
     Groups groups(mesh.positions.size());
@@ -29,6 +22,20 @@ Parts parts(const Mesh& mesh) {
         result.of.push_back(part);
     }
     return result;
+}
+
+std::vector<Bounds> boxes(const Mesh& mesh, const Parts& parts) {
+    std::vector<Bounds> box(parts.count);
+    for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
+        for (int k = 0; k < 3; ++k) box[parts.of[face]].include(mesh.positions[mesh.triangles[face][k]]);
+    return box;
+}
+
+std::vector<double> areas(const Mesh& mesh, const Parts& parts) {
+    std::vector<double> area(parts.count);
+    for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
+        area[parts.of[face]] += face_area(mesh, mesh.triangles[face]);
+    return area;
 }
 
 std::vector<double> volumes(const Mesh& mesh, const Parts& parts) {
@@ -55,28 +62,48 @@ std::vector<float> sides(const Mesh& mesh, const Parts& parts) {
     return longest;
 }
 
-std::size_t keep_parts(Mesh& mesh, const Parts& parts, const std::vector<char>& keep) {
-    const auto go = std::size_t(std::count(keep.begin(), keep.end(), false));
-    if (go == 0) return 0;
+Dropped keep_parts(Mesh& mesh, const Parts& parts, const std::vector<char>& keep) {
+    Dropped dropped;
+    dropped.parts = std::size_t(std::count(keep.begin(), keep.end(), false));
+    if (dropped.parts == 0) return dropped;
+    const std::vector<double> volume = volumes(mesh, parts), area = areas(mesh, parts);
+    for (Index part = 0; part < parts.count; ++part) {
+        if (keep[part]) continue;
+        dropped.volume += std::abs(volume[part]);
+        dropped.area += area[part];
+    }
     std::size_t face = 0;
     std::erase_if(mesh.triangles, [&](uvec3) { return !keep[parts.of[face++]]; });
     drop_unused(mesh);
-    return go;
+    return dropped;
 }
 
-std::size_t keep_largest(Mesh& mesh) {
+Dropped drop_crumbs(Mesh& mesh, std::size_t most) {
     const Parts part = parts(mesh);
-    if (part.count < 2) return drop_unused(mesh), 0;
-    std::vector<std::size_t> faces(part.count);
-    for (Index i : part.of) ++faces[i];
+    if (part.count <= most) return {};
+    const std::vector<double> volume = volumes(mesh, part);
+    std::vector<Index> order(part.count);
+    std::iota(order.begin(), order.end(), Index(0));
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return std::abs(volume[a]) > std::abs(volume[b]); });
     std::vector<char> keep(part.count);
-    keep[std::size_t(std::max_element(faces.begin(), faces.end()) - faces.begin())] = true;
+    for (std::size_t i = 0; i < most; ++i) keep[order[i]] = true;
     return keep_parts(mesh, part, keep);
 }
 
-std::size_t drop_specks(Mesh& mesh, float fraction) {
+Dropped fill_cavities(Mesh& mesh, double fraction) {
     const Parts part = parts(mesh);
-    if (part.count < 2) return 0;
+    const std::vector<double> volume = volumes(mesh, part);
+    double all = 0;
+    for (double one : volume) all += one;
+    std::vector<char> keep;
+    for (double one : volume) keep.push_back(one >= 0 || -one >= fraction * all);
+    return keep_parts(mesh, part, keep);
+}
+
+Dropped drop_specks(Mesh& mesh, float fraction) {
+    const Parts part = parts(mesh);
+    if (part.count < 2) return {};
     const std::vector<float> side = sides(mesh, part);
     const float least = fraction * *std::max_element(side.begin(), side.end());
     std::vector<char> keep;

@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/mesh/corners.h"
+#include "palpate/mesh/repair.h"
 
 #include <cstddef>
 #include <vector>
@@ -13,14 +14,20 @@ struct Parts {
 };
 Parts parts(const Mesh& mesh);
 
+/// Each part's box.
+std::vector<Bounds> boxes(const Mesh& mesh, const Parts& parts);
+
+/// Each part's area, m².
+std::vector<double> areas(const Mesh& mesh, const Parts& parts);
+
 /// Each part's volume, m³, about the middle of its own box; negative if it is inside out.
 std::vector<double> volumes(const Mesh& mesh, const Parts& parts);
 
 /// The longest side of each part's box, m.
 std::vector<float> sides(const Mesh& mesh, const Parts& parts);
 
-/// Keeps the faces of those parts for which `keep` is true, and their vertices; returns how many parts went.
-std::size_t keep_parts(Mesh& mesh, const Parts& parts, const std::vector<char>& keep);
+/// Keeps the faces of those parts for which `keep` is true, and their vertices; returns what went.
+Dropped keep_parts(Mesh& mesh, const Parts& parts, const std::vector<char>& keep);
 
 /// Sheets in which a walk over edges with two faces comes back upside down.
 std::size_t one_sided_parts(const Mesh& mesh);

@@ -17,15 +17,33 @@ namespace {
 // What was done so far. A step that is taken again adds to its count.
 struct Steps {
     std::vector<Repair> done;
+    double dropped = 0;  // m³, in all
 
-    void add(const std::string& what, std::size_t count) {
-        if (count == 0) return;
-        const auto at =
+    Repair& add(const std::string& what, std::size_t count) {
+        auto at =
             std::find_if(done.begin(), done.end(), [&](const Repair& step) { return step.what == what; });
-        if (at == done.end())
-            done.push_back({what, count});
-        else
-            at->count += count;
+        if (at == done.end()) at = done.insert(at, {what, 0});
+        at->count += count;
+        return *at;
+    }
+    void add(const std::string& what, const Dropped& went) {
+        if (went.parts > 0) add(what, went.parts).volume += went.volume;
+        dropped += went.volume;
+    }
+    // Of a surface's area.
+    void add(const std::string& what, std::size_t count, double share) {
+        if (count > 0) add(what, count).share += share;
+    }
+
+    // What all of it came to, of a solid of this volume in a unit of so many metres.
+    std::vector<Repair> of(double volume, double unit) && {
+        std::erase_if(done, [](const Repair& step) { return step.count == 0; });
+        for (Repair& step : done) {
+            if (step.volume <= 0) continue;
+            step.share = step.volume / (volume + dropped);
+            step.volume *= unit * unit * unit;
+        }
+        return std::move(done);
     }
 };
 
@@ -47,7 +65,7 @@ class Handy {
     Handy& operator=(const Handy&) = delete;
 
     float length(float metres) const { return std::ldexp(metres, -power_); }
-    double metres(double length) const { return std::ldexp(length, power_); }
+    double unit() const { return std::ldexp(1.0, power_); }  // m
 
  private:
     void scale(int power) {
@@ -85,6 +103,14 @@ float longest_side(const Mesh& mesh) {
     return std::max({size.x, size.y, size.z});
 }
 
+// The area of the faces from `first` on.
+double area_from(const Mesh& mesh, std::size_t first) {
+    double area = 0;
+    for (std::size_t face = first; face < mesh.triangles.size(); ++face)
+        area += face_area(mesh, mesh.triangles[face]);
+    return area;
+}
+
 // Where a few faces lie back to back, both go. Where most do, the surface was written from both sides, and
 // one of each two stays.
 void drop_backs(Mesh& mesh, Steps& steps) {
@@ -110,31 +136,41 @@ void clean(Mesh& mesh, const RepairSettings& settings, float tolerance, Steps& s
     steps.add("vertices welded", welded);
     steps.add("collapsed or double faces dropped", collapsed);
     drop_backs(mesh, steps);
-    steps.add("specks dropped", drop_specks(mesh, settings.specks));
-    if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh));
+    const double area = area_from(mesh, 0);
+    auto dropped = [&](const std::string& what, const Dropped& went) {
+        if (settings.sheet)
+            steps.add(what, went.parts, went.area / area);
+        else
+            steps.add(what, went);
+    };
+    dropped("specks dropped", drop_specks(mesh, settings.specks));
     steps.add("faces without an area removed", drop_flat_faces(mesh));
     steps.add("faces turned to agree with their neighbours", turn_faces(mesh));
+    if (settings.largest)  // before the rest is mended, which what goes anyway might spoil
+        dropped("smaller parts dropped", settings.sheet ? keep_largest_sheet(mesh) : keep_largest(mesh));
+    if (settings.cavities > 0) {
+        const Dropped filled = fill_cavities(mesh, settings.cavities);
+        steps.add("small cavities filled", filled.parts).volume += filled.volume;
+    }
 }
 
 // Drops parts that enclose next to nothing. `closing`: from here on, faces were put in to close holes. What
 // needed a great lid and still encloses little was meant as a sheet.
-std::size_t drop_sheets(Mesh& mesh, std::size_t closing) {
+void drop_sheets(Mesh& mesh, std::size_t closing, Steps& steps) {
     const Parts part = parts(mesh);
-    std::vector<double> area(part.count), lid(part.count);
-    for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
-        const uvec3 t = mesh.triangles[face];
-        const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-        const double own = 0.5 * glm::length(glm::cross(b - a, c - a));
-        area[part.of[face]] += own;
-        if (face >= closing) lid[part.of[face]] += own;
-    }
+    const std::vector<double> area = areas(mesh, part);
+    std::vector<double> lid(part.count);
+    for (std::size_t face = closing; face < mesh.triangles.size(); ++face)
+        lid[part.of[face]] += face_area(mesh, mesh.triangles[face]);
     const std::vector<double> volume = volumes(mesh, part);
     std::vector<char> keep;
     for (Index i = 0; i < part.count; ++i) {
         const double roundness = std::abs(volume[i]) / std::pow(area[i], 1.5);  // of a ball 0.094
         keep.push_back(roundness > (lid[i] > 0.25 * area[i] ? 1e-3 : 1e-6));
     }
-    return keep_parts(mesh, part, keep);
+    const double all = area_from(mesh, 0);
+    const Dropped went = keep_parts(mesh, part, keep);
+    steps.add("sheets dropped that enclose nothing", went.parts, went.area / all);
 }
 
 Error no_inside(const RepairSettings& settings) {
@@ -144,19 +180,15 @@ Error no_inside(const RepairSettings& settings) {
 // A Möbius band, not a bottle with a hole: one side only, and more border than face.
 bool is_one_sided_sheet(const Mesh& mesh) {
     if (one_sided_parts(mesh) == 0) return false;
-    double area = 0;
-    for (uvec3 t : mesh.triangles) {
-        const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-        area += 0.5 * glm::length(glm::cross(b - a, c - a));
-    }
     const double border = soundness(mesh).longest_hole;
-    return border * border / (4 * std::numbers::pi) > 0.25 * area;  // a disc of this border
+    const double disc = border * border / (4 * std::numbers::pi);  // the area of one with this border
+    return disc > 0.25 * area_from(mesh, 0);
 }
 
 // Leaves of closed parts those that part inside from outside, and what is large enough.
 void settle(Mesh& mesh, const RepairSettings& settings, Steps& steps) {
     steps.add("faces without an area removed", drop_flat_faces(mesh));
-    steps.add("sheets dropped that enclose nothing", drop_sheets(mesh, mesh.triangles.size()));
+    drop_sheets(mesh, mesh.triangles.size(), steps);
     steps.add("specks dropped", drop_specks(mesh, settings.specks));
     if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh));
     steps.add("parts turned right way out", turn_parts(mesh));
@@ -169,19 +201,22 @@ std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps)
     if (const std::size_t parts = one_sided_parts(mesh); parts > 0)
         return fmt::format("{} part{} one side only", parts, parts == 1 ? " has" : "s have");
     const std::size_t closing = mesh.triangles.size();
-    steps.add("holes closed", close_holes(mesh));
-    steps.add("sheets dropped that enclose nothing", drop_sheets(mesh, closing));
+    const std::size_t holes = close_holes(mesh);
+    steps.add("holes closed", holes, area_from(mesh, closing) / area_from(mesh, 0));
+    drop_sheets(mesh, closing, steps);
     steps.add("faces dropped that lay back to back", drop_flaps(mesh));
     steps.add("vertices added to part what only touches", part_sheets(mesh));
     settle(mesh, settings, steps);
     const Intersections cuts = intersections(mesh);
     if (!cuts.all) steps.add("faces too crowded to be searched for cuts", mesh.triangles.size());
     if (!cuts.faces.empty()) {
+        const double before = volume(mesh);
         const std::size_t mended = mend_intersections(mesh, cuts);
         if (mended == 0)
             return fmt::format("{}{} pairs of faces cut through each other", cuts.all ? "" : "over ",
                                cuts.faces.size());
-        steps.add("faces replaced that cut through each other", mended);
+        steps.add("faces replaced that cut through each other", mended).volume +=
+            std::abs(volume(mesh) - before);
         settle(mesh, settings, steps);
     }
     if (const std::size_t crossing = nesting(mesh).crossing; crossing > 0)
@@ -192,15 +227,18 @@ std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps)
 }
 
 // Brings what voxels made to about as many faces as there were before, or to as few as can be had without
-// cutting through each other.
+// cutting through each other; and without the crumbs that break off where a gap or a neck is narrow.
 void simplify(Mesh& solid, std::size_t faces) {
     constexpr std::size_t fewest = 2000;
+    const std::size_t most = parts(solid).count;
     for (std::size_t wanted = std::max(faces, fewest);; wanted *= 2) {
         Mesh simple = solid;
         decimate(simple, wanted);
         part_sheets(simple);
+        drop_crumbs(simple, most);
         const Intersections cuts = intersections(simple);
         if (cuts.faces.empty() || mend_intersections(simple, cuts) > 0 || wanted > solid.triangles.size()) {
+            drop_crumbs(simple, most);
             solid = std::move(simple);
             return;
         }
@@ -210,13 +248,23 @@ void simplify(Mesh& solid, std::size_t faces) {
 void make_by_voxels(Mesh& mesh, const RepairSettings& settings, float voxel, const std::string& why,
                     const Progress& progress, Steps& steps) {
     steps.add("parts turned right way out", turn_parts(mesh));
-    Mesh solid = remake(mesh, voxel, settings.name, progress);
+    Remade made = remake(mesh, voxel, settings.name, progress);
+    Mesh& solid = made.solid;
+    steps.add("hollows filled that no wall bounds", made.hollows.parts).volume = made.hollows.volume;
+    steps.add("bits dropped that voxels left", made.bits);
+    steps.add("faces lost where walls are thinner than a voxel", made.thin_faces, made.thin);
+    Steps own;  // of what voxels made; only what these drop is news
+    settle(solid, settings, own);
+    const double before = volume(solid);
     simplify(solid, mesh.triangles.size());
-    Steps unsaid;
-    settle(solid, settings, unsaid);
+    settle(solid, settings, own);
+    for (const Repair& step : own.done)
+        if (step.what == "specks dropped" || step.what == "smaller parts dropped")
+            steps.add(step.what, Dropped{step.count, step.volume});
     if (!is_closed(solid) || !(volume(solid) > 0)) throw no_inside(settings);
     mesh = std::move(solid);
-    steps.add("faces made by voxels, because " + why, mesh.triangles.size());
+    steps.add("faces made by voxels, because " + why, mesh.triangles.size()).volume =
+        std::abs(volume(mesh) - before);
 }
 
 }  // namespace
@@ -224,6 +272,15 @@ void make_by_voxels(Mesh& mesh, const RepairSettings& settings, float voxel, con
 std::span<const Named<SolidBy>> names(SolidBy) {
     static constexpr Named<SolidBy> all[] = {{SolidBy::walls, "walls"}, {SolidBy::voxels, "voxels"}};
     return all;
+}
+
+std::string in_words(const Repair& step) {
+    std::string words = fmt::format("{}: {}", step.what, step.count);
+    if (step.volume > 0)
+        words += fmt::format(" ({:.2g} % of the volume, {:.3g} ml)", 100 * step.share, 1e6 * step.volume);
+    else if (step.share > 0)
+        words += fmt::format(" ({:.2g} % of the area)", 100 * step.share);
+    return words;
 }
 
 std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Progress& progress) {
@@ -237,7 +294,7 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
     clean(mesh, settings, handy.length(settings.weld), steps);
     if (settings.sheet) {
         if (mesh.triangles.empty()) throw Error("no face with an area", settings.name, "look at the file");
-        return steps.done;
+        return std::move(steps).of(0, handy.unit());
     }
     if (is_one_sided_sheet(mesh)) throw no_inside(settings);
     std::string why = "so it was asked";
@@ -248,12 +305,12 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
         why = mend_walls(walls, settings, more);
         if (why.empty()) {
             mesh = std::move(walls);
-            return more.done;
+            return std::move(more).of(volume(mesh), handy.unit());
         }
     }
     tell("making a solid by voxels", 0.5);
     make_by_voxels(mesh, settings, handy.length(settings.voxel), why, progress, steps);
-    return steps.done;
+    return std::move(steps).of(volume(mesh), handy.unit());
 }
 
 }  // namespace palpate

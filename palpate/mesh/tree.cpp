@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -15,10 +16,12 @@ constexpr Index most_in_a_leaf = 4;
 
 class Halving {
  public:
-    Halving(const Mesh& mesh, Tree& tree) : mesh_(mesh), tree_(tree) {
-        for (uvec3 t : mesh.triangles)  // three times the middle
-            middles_.push_back(mesh.positions[t.x] / 3.0f + mesh.positions[t.y] / 3.0f +
-                               mesh.positions[t.z] / 3.0f);
+    Halving(const Mesh& mesh, Tree& tree) : mesh_(mesh), tree_(tree), middles_(mesh.triangles.size()) {
+        for (Index face : tree.faces) {
+            const uvec3 t = mesh.triangles[face];
+            middles_[face] =
+                mesh.positions[t.x] / 3.0f + mesh.positions[t.y] / 3.0f + mesh.positions[t.z] / 3.0f;
+        }
     }
 
     void halve(Index first, Index count) {
@@ -52,10 +55,17 @@ float distance_squared(const Tree::Node& node, vec3 p) {
     return glm::dot(off, off);
 }
 
+std::vector<Index> all_faces(const Mesh& mesh) {
+    std::vector<Index> faces(mesh.triangles.size());
+    std::iota(faces.begin(), faces.end(), Index(0));
+    return faces;
+}
+
 }  // namespace
 
-Tree::Tree(const Mesh& all) : faces(all.triangles.size()), mesh(all) {
-    std::iota(faces.begin(), faces.end(), Index(0));
+Tree::Tree(const Mesh& all) : Tree(all, all_faces(all)) {}
+
+Tree::Tree(const Mesh& all, std::vector<Index> some) : faces(std::move(some)), mesh(all) {
     nodes.reserve(faces.size());
     if (!faces.empty()) Halving(mesh, *this).halve(0, Index(faces.size()));
 }
@@ -93,12 +103,22 @@ Tree::Plate Tree::plate(const Node& node) const {
     return plate;
 }
 
-float Tree::distance(vec3 p, float most) const {
+Tree::Nearest Tree::nearest(vec3 p, float most, Index guess) const {
     struct Wait {
         Index node;
         float squared;
     };
     float best = most * most;
+    Index face = none;
+    auto look_at = [&](Index other) {
+        const uvec3 t = mesh.triangles[other];
+        const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        const vec3 weights = nearest_weights(p, a, b, c);
+        const vec3 off = weights.x * a + weights.y * b + weights.z * c - p;
+        const float squared = glm::dot(off, off);
+        if (squared < best) best = squared, face = other;
+    };
+    if (guess != none) look_at(guess);
     std::vector<Wait> stack;
     auto push = [&](Index node) {
         const float squared = distance_squared(nodes[node], p);
@@ -111,13 +131,7 @@ float Tree::distance(vec3 p, float most) const {
         if (!(wait.squared < best)) continue;
         const Node& node = nodes[wait.node];
         if (node.second == 0) {
-            for (Index i = node.first; i < node.first + node.count; ++i) {
-                const uvec3 t = mesh.triangles[faces[i]];
-                const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-                const vec3 weights = nearest_weights(p, a, b, c);
-                const vec3 off = weights.x * a + weights.y * b + weights.z * c - p;
-                best = std::min(best, glm::dot(off, off));
-            }
+            for (Index i = node.first; i < node.first + node.count; ++i) look_at(faces[i]);
             continue;
         }
         // The nearer half last, so that it is looked at first.
@@ -125,7 +139,7 @@ float Tree::distance(vec3 p, float most) const {
         push(swap ? node.second : wait.node + 1);
         push(swap ? wait.node + 1 : node.second);
     }
-    return std::sqrt(best);
+    return {face == none ? most : std::sqrt(best), face};
 }
 
 }  // namespace palpate

@@ -26,12 +26,19 @@ struct Tree {
     std::vector<Node> nodes;   // nodes[0] holds all; none if the mesh has no faces
     std::vector<Index> faces;  // by node
 
-    /// The mesh must outlive it, unchanged.
+    /// Over all faces, or over these. The mesh must outlive it, unchanged.
     explicit Tree(const Mesh& mesh);
+    Tree(const Mesh& mesh, std::vector<Index> faces);
 
-    /// The distance from a point to the nearest face, or `most` if none is nearer. Any unit, but neither so
-    /// large nor so small that squares of lengths do not fit a float.
-    float distance(vec3 point, float most) const;
+    struct Nearest {
+        float distance;
+        Index face;  // of the mesh; none if no face is nearer than was asked
+    };
+    /// The face nearest to a point; at `most`, if none is nearer. `guess`: a face that may be near, so that
+    /// less is looked at. Any unit, but neither so large nor so small that squares of lengths do not fit a
+    /// float.
+    Nearest nearest(vec3 point, float most, Index guess = none) const;
+    float distance(vec3 point, float most) const { return nearest(point, most).distance; }
 
     const Mesh& mesh;
 

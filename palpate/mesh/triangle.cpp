@@ -36,7 +36,44 @@ Vector nearest(Vector p, Vector a, Vector b, Vector c) {
     return best;
 }
 
+using Corners = std::array<dvec3, 3>;
+
+double distance(dvec3 p, const Corners& t) {
+    const dvec3 w = nearest_weights(p, t[0], t[1], t[2]);
+    return glm::distance(p, w.x * t[0] + w.y * t[1] + w.z * t[2]);
+}
+
+// Whether a segment passes a triangle's plane no farther than `reach` from it.
+bool passes(dvec3 from, dvec3 to, const Corners& t, double reach) {
+    const dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const double start = glm::dot(normal, from - t[0]), end = glm::dot(normal, to - t[0]);
+    return start != end && start * end <= 0 &&
+           distance(glm::mix(from, to, start / (start - end)), t) <= reach;
+}
+
+// Whether two segments come that near where neither has an end.
+bool sides_are_near(dvec3 p, dvec3 q, dvec3 r, dvec3 s, double reach) {
+    const dvec3 u = q - p, w = s - r, off = p - r;
+    const double uu = glm::dot(u, u), uw = glm::dot(u, w), ww = glm::dot(w, w), u_off = glm::dot(u, off),
+                 w_off = glm::dot(w, off), area = uu * ww - uw * uw;
+    if (!(area > 0)) return false;  // parallel
+    const double x = (uw * w_off - ww * u_off) / area, y = (uu * w_off - uw * u_off) / area;
+    return x >= 0 && x <= 1 && y >= 0 && y <= 1 && glm::length(off + x * u - y * w) <= reach;
+}
+
 }  // namespace
+
+bool are_near(const Corners& a, const Corners& b, double reach) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t next = (i + 1) % 3;
+        if (distance(a[i], b) <= reach || distance(b[i], a) <= reach || passes(a[i], a[next], b, reach) ||
+            passes(b[i], b[next], a, reach))
+            return true;
+        for (std::size_t j = 0; j < 3; ++j)
+            if (sides_are_near(a[i], a[next], b[j], b[(j + 1) % 3], reach)) return true;
+    }
+    return false;
+}
 
 vec3 nearest_weights(vec3 p, vec3 a, vec3 b, vec3 c) { return nearest(p, a, b, c); }
 dvec3 nearest_weights(dvec3 p, dvec3 a, dvec3 b, dvec3 c) { return nearest(p, a, b, c); }

@@ -10,16 +10,51 @@ constexpr double whole_sphere = 4 * std::numbers::pi;
 constexpr double far_off = 3;     // in reaches of a plate: for the error that the header promises
 constexpr double far_around = 5;  // in radii of a ball, as far as a slope is enough
 
+// Half a triangle's solid angle, as where it leads on a circle: from -pi to pi (Van Oosterom and Strackee
+// 1983). `up` is 0 if nothing of it is seen.
+struct Half {
+    double along, up;
+};
+Half half_solid_angle(dvec3 point, dvec3 a, dvec3 b, dvec3 c) {
+    a -= point, b -= point, c -= point;
+    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+    return {la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb,
+            glm::dot(a, glm::cross(b, c))};
+}
+
+// A sum of such angles that costs a single arc tangent: where they lead together, and how often round.
+class Angles {
+ public:
+    void add(Half angle) {
+        if (angle.up == 0) return;
+        const Half both{along_ * angle.along - up_ * angle.up, along_ * angle.up + up_ * angle.along};
+        if (is_upper() && angle.up > 0 && both.up < 0) ++rounds_;
+        if (!is_upper() && angle.up < 0 && both.up > 0) --rounds_;
+        const double size = std::abs(both.along) + std::abs(both.up);
+        along_ = both.along / size, up_ = both.up / size;
+    }
+    double sum() const { return std::atan2(up_, along_) + 2 * std::numbers::pi * rounds_; }
+
+ private:
+    bool is_upper() const { return up_ > 0 || (up_ == 0 && along_ < 0); }
+
+    double along_ = 1, up_ = 0;
+    int rounds_ = 0;
+};
+
 }  // namespace
 
 double solid_angle(dvec3 point, dvec3 a, dvec3 b, dvec3 c) {
-    // Van Oosterom and Strackee (1983).
-    a -= point, b -= point, c -= point;
-    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-    const double up = glm::dot(a, glm::cross(b, c));
-    const double along = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-    return up == 0 ? 0 : 2 * std::atan2(up, along) / whole_sphere;
+    const Half half = half_solid_angle(point, a, b, c);
+    return half.up == 0 ? 0 : 2 * std::atan2(half.up, half.along) / whole_sphere;
 }
+
+// What is far, and what is near.
+struct WindingNumber::Sum {
+    double plates = 0;
+    Angles faces{};
+    double winding() const { return plates + 2 * faces.sum() / whole_sphere; }
+};
 
 WindingNumber::Ball WindingNumber::ball(dvec3 centre, double radius) const {
     Ball result{centre, radius};
@@ -54,27 +89,37 @@ void WindingNumber::gather(Index node, Ball& ball) const {
     }
 }
 
-double WindingNumber::at(dvec3 point, const Ball& ball) const {
-    double sum = ball.value + glm::dot(ball.slope, point - ball.centre);
-    for (Index node : ball.near) sum += look(node, point);
-    return sum;
+double WindingNumber::at(dvec3 point) const {
+    Sum sum;
+    if (!tree_.nodes.empty()) look(0, point, sum);
+    return sum.winding();
 }
 
-double WindingNumber::look(std::size_t node, dvec3 point) const {
+double WindingNumber::at(dvec3 point, const Ball& ball) const {
+    Sum sum{ball.value + glm::dot(ball.slope, point - ball.centre)};
+    for (Index node : ball.near) look(node, point, sum);
+    return sum.winding();
+}
+
+void WindingNumber::look(std::size_t node, dvec3 point, Sum& sum) const {
     const Tree::Plate& plate = plates_[node];
     const dvec3 way = plate.centre - point;
     const double distance = glm::length(way);
-    if (distance > far_off * plate.reach)
-        return glm::dot(plate.area, way) / (whole_sphere * distance * distance * distance);
+    if (distance > far_off * plate.reach) {
+        sum.plates += glm::dot(plate.area, way) / (whole_sphere * distance * distance * distance);
+        return;
+    }
     const Tree::Node& box = tree_.nodes[node];
-    if (box.second != 0) return look(node + 1, point) + look(box.second, point);
-    double sum = 0;
+    if (box.second != 0) {
+        look(node + 1, point, sum);
+        look(box.second, point, sum);
+        return;
+    }
     for (Index i = box.first; i < box.first + box.count; ++i) {
         const uvec3 t = tree_.mesh.triangles[tree_.faces[i]];
-        sum += solid_angle(point, dvec3(tree_.mesh.positions[t.x]), dvec3(tree_.mesh.positions[t.y]),
-                           dvec3(tree_.mesh.positions[t.z]));
+        sum.faces.add(half_solid_angle(point, dvec3(tree_.mesh.positions[t.x]),
+                                       dvec3(tree_.mesh.positions[t.y]), dvec3(tree_.mesh.positions[t.z])));
     }
-    return sum;
 }
 
 }  // namespace palpate

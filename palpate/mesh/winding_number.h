@@ -16,7 +16,7 @@ class WindingNumber {
     /// The tree must outlive this.
     explicit WindingNumber(const Tree& tree) : tree_(tree), plates_(tree.plates()) {}
 
-    double at(dvec3 point) const { return tree_.nodes.empty() ? 0 : look(0, point); }
+    double at(dvec3 point) const;
 
     /// A ball in which many points will be asked for. What is far from it is summed once and for all, as a
     /// value and a slope; what is near is still to be looked at from each point.
@@ -34,7 +34,8 @@ class WindingNumber {
     double at(dvec3 point, const Ball& ball) const;
 
  private:
-    double look(std::size_t node, dvec3 point) const;
+    struct Sum;
+    void look(std::size_t node, dvec3 point, Sum& sum) const;
     void gather(Index node, Ball& ball) const;
 
     const Tree& tree_;

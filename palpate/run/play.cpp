@@ -28,6 +28,7 @@ Report::Body describe(const Model& model) {
     body.mass = mass(model.body);
     const bool open = !model.body.faces.empty() && soundness(model.surface).open_edges > 0;
     body.volume = open ? 0 : volume(model.surface);
+    body.mended = model.steps;
     return body;
 }
 
@@ -102,6 +103,7 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
         body.vertices = still.surface.positions.size();
         body.faces = still.surface.triangles.size();
         body.volume = volume(still.surface);
+        body.mended = still.steps;
     }
     for (const ToolRecipe& tool : scene.tools) {
         if (tool.kind == ToolKind::press)

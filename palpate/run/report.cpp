@@ -50,7 +50,8 @@ Json to_json(const Report::Body& body) {
             {"kinetic_energy_j", body.kinetic_energy},
             {"elastic_energy_j", body.elastic_energy},
             {"largest_speed_m_s", body.largest_speed},
-            {"inverted_cells", body.inverted_cells}};
+            {"inverted_cells", body.inverted_cells},
+            {"mended", body.mended}};
 }
 
 Json to_json(const Report::Tool& tool) {

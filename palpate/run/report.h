@@ -13,15 +13,16 @@ struct Report {
     struct Body {
         std::string name;
         std::size_t nodes = 0, pinned = 0, springs = 0, cells = 0, vertices = 0, faces = 0;
-        double spacing = 0;              // m
-        double mass = 0;                 // kg, of the free nodes
-        double volume = 0;               // m³, enclosed by the surface at rest; 0 for an open sheet
-        long steps = 0;                  // in all
-        double step = 0;                 // s, the shortest taken
-        double kinetic_energy = 0;       // J, at the end
-        double elastic_energy = 0;       // J, at the end
-        double largest_speed = 0;        // m/s, at the end of any frame
-        std::size_t inverted_cells = 0;  // at the end of the worst frame
+        double spacing = 0;               // m
+        double mass = 0;                  // kg, of the free nodes
+        double volume = 0;                // m³, enclosed by the surface at rest; 0 for an open sheet
+        long steps = 0;                   // in all
+        double step = 0;                  // s, the shortest taken
+        double kinetic_energy = 0;        // J, at the end
+        double elastic_energy = 0;        // J, at the end
+        double largest_speed = 0;         // m/s, at the end of any frame
+        std::size_t inverted_cells = 0;   // at the end of the worst frame
+        std::vector<std::string> mended;  // what was done to get its surface
     };
     /// Of one tool.
     struct Tool {

@@ -6,6 +6,7 @@
 #include "palpate/body/influences.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
+#include "palpate/mesh/parts.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/relief.h"
 #include "palpate/mesh/repair.h"
@@ -114,8 +115,23 @@ void hold(Body& body, const BodyRecipe& recipe, const Scene& scene, std::vector<
 
 // ---- bodies ----
 
-// What the user should know of what came out. `solid`: the volume that was filled, m³.
-void add_notes(const BodyRecipe& recipe, const Model& model, double solid, std::vector<std::string>& notes) {
+// How much a solid encloses, and how much its cavities, m³.
+struct Enclosed {
+    double solid = 0, cavities = 0;
+};
+
+Enclosed enclosed_by(const Mesh& mesh) {
+    Enclosed found;
+    for (double volume : volumes(mesh, parts(mesh))) {
+        found.solid += volume;
+        found.cavities += std::max(-volume, 0.0);
+    }
+    return found;
+}
+
+// What the user should know of what came out. `filled`: the volume that was filled.
+void add_notes(const BodyRecipe& recipe, const Model& model, Enclosed filled,
+               std::vector<std::string>& notes) {
     auto note = [&](const std::string& what) {
         notes.push_back(fmt::format("body {}: {}", recipe.name, what));
     };
@@ -132,12 +148,16 @@ void add_notes(const BodyRecipe& recipe, const Model& model, double solid, std::
     if (recipe.spacing <= 0 && std::abs(double(body.count()) / recipe.nodes - 1) > 0.05)
         note(fmt::format("{} nodes instead of {}: the nearest that a spacing gives", body.count(),
                          recipe.nodes));
-    const double filled = double(body.cells.size()) * std::pow(body.spacing, 3) / solid;
-    if (!(std::abs(filled - 1) < 0.1))
-        note(fmt::format(
-            "the cells hold {:.2f} times the surface's volume: parts are thinner than a cell, or sealed "
-            "hollows count as full",
-            filled));
+    if (filled.cavities > 0.01 * filled.solid)
+        note(fmt::format("the lattice fills the surface's cavities too: {:.2g} % of its volume ({:.3g} ml)",
+                         100 * filled.cavities / filled.solid, 1e6 * filled.cavities));
+    const double cells =
+        double(body.cells.size()) * std::pow(body.spacing, 3) / (filled.solid + filled.cavities);
+    if (!(std::abs(cells - 1) < 0.1))
+        note(
+            fmt::format("the cells hold {:.2f} times the surface's volume: parts are thinner than a cell; "
+                        "more nodes follow them better",
+                        cells));
 }
 
 ClothSettings cloth_settings(const BodyRecipe& recipe) {
@@ -287,6 +307,7 @@ CleanSurface surface_of(const BodyRecipe& recipe, const Scene& scene, const Earl
     if (!old || old->surface.triangles.empty()) return make_surface(recipe, scene.folder, progress);
     CleanSurface made;
     made.mesh = old->surface;
+    made.steps = old->steps;
     return made;
 }
 
@@ -316,11 +337,12 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* ear
     CleanSurface made;
     if (!grid) made = surface_of(recipe, scene, earlier, progress);
     for (const std::string& note : made.notes) notes.push_back(fmt::format("body {}: {}", recipe.name, note));
-    const double solid = volume(made.mesh);
+    const Enclosed filled = enclosed_by(made.mesh);
     tell(progress, recipe, recipe.is_cloth() ? "making cloth" : "filling with a lattice", 0.6);
     Model model;
     model.body = make_body(recipe, made.mesh, progress);
     model.body.name = recipe.name;
+    model.steps = std::move(made.steps);
     if (recipe.dims)
         model.surface = hull_mesh(model.body);
     else if (recipe.cloth)
@@ -337,7 +359,7 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* ear
     if (grid) place(model, recipe);
 
     hold(model.body, recipe, scene, notes);
-    add_notes(recipe, model, solid, notes);
+    add_notes(recipe, model, filled, notes);
     return model;
 }
 
@@ -348,7 +370,7 @@ Still build_still(const BodyRecipe& wanted, const Scene& scene, const Earlier* e
     CleanSurface made = make_surface(recipe, scene.folder, progress);
     for (const std::string& note : made.notes)
         notes.push_back(fmt::format("surface {}: {}", recipe.name, note));
-    return {recipe.name, std::move(made.mesh)};
+    return {recipe.name, std::move(made.mesh), std::move(made.steps)};
 }
 
 // ---- what moves ----

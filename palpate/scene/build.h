@@ -14,13 +14,15 @@ struct Model {
     Body body;
     Mesh surface;  // with texture coordinates where its recipe has maps, and tangents where one is of normals
     Embedding embedding;
-    Image colour_map, normal_map;  // as the recipe wants them; else empty
+    Image colour_map, normal_map;         // as the recipe wants them; else empty
+    std::vector<std::string> steps = {};  // what was done to get its surface, a line each with its counts
 };
 
 /// A surface that nothing moves.
 struct Still {
     std::string name;
     Mesh surface;
+    std::vector<std::string> steps = {};  // what was done to get it
 };
 
 /// The nodes of a prescribed motion.

@@ -7,6 +7,8 @@
 #include "palpate/mesh/parts.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/repair.h"
+#include "palpate/mesh/tree.h"
+#include "palpate/mesh/winding_number.h"
 
 #include <fmt/format.h>
 
@@ -28,6 +30,11 @@ struct Work {
         if (progress) progress(recipe.name + ": " + doing, fraction);
     }
     void did(const std::string& step) { result.steps.push_back(step); }
+    // What changed the surface by more than a hundredth is a note as well.
+    void did(const Repair& step) {
+        did(in_words(step));
+        if (step.share > 0.01) result.notes.push_back(in_words(step));
+    }
 };
 
 const std::string& file_of(const BodyRecipe& recipe) {
@@ -73,23 +80,50 @@ float scale_of(const Mesh& mesh, const BodyRecipe& recipe) {
 void mend(Mesh& mesh, Work& work) {
     const BodyRecipe& recipe = work.recipe;
     RepairSettings settings = recipe.repair;
-    if (const float scale = scale_of(mesh, recipe); scale > 0 && std::isfinite(scale)) {
-        settings.weld /= scale;
-        settings.voxel /= scale;
-    }
+    const float wanted = scale_of(mesh, recipe), scale = wanted > 0 && std::isfinite(wanted) ? wanted : 1;
+    settings.weld /= scale;
+    settings.voxel /= scale;
     settings.largest = recipe.largest;
+    if (recipe.largest && !recipe.volume.empty()) settings.cavities = 0.001;
     settings.sheet = may_be_open(recipe);
     settings.name = file_of(recipe);
     const Progress tell = [&](std::string_view doing, double done) {
         work.tell(std::string(doing), 0.3 + 0.2 * done);
     };
-    for (const Repair& step : repair(mesh, settings, tell))
-        work.did(fmt::format("{}: {}", step.what, step.count));
+    std::vector<Repair> steps = repair(mesh, settings, tell);
+    const double unit = std::pow(double(scale_of(mesh, recipe)), 3);  // now that it is as large as it will be
+    for (Repair& step : steps) {
+        step.volume *= unit;
+        work.did(step);
+    }
+}
+
+// Which parts of a file are in the solid that was made of it: most of their faces lie in it or on it.
+std::vector<char> parts_in(const Mesh& solid, const Mesh& mesh, const Parts& part) {
+    constexpr std::size_t most_looks = 100;  // a part
+    const vec3 size = bounds(solid).size();
+    const float on = 0.005f * std::max({size.x, size.y, size.z});  // about, where voxels made it
+    const Tree tree(solid);
+    const WindingNumber winding(tree);
+    std::vector<std::vector<Index>> faces(part.count);
+    for (Index face = 0; face < part.of.size(); ++face) faces[part.of[face]].push_back(face);
+    std::vector<char> in;
+    for (const std::vector<Index>& own : faces) {
+        const std::size_t looks = std::min(most_looks, own.size());
+        std::size_t found = 0;
+        for (std::size_t look = 0; look < looks; ++look) {
+            const uvec3 t = mesh.triangles[own[look * own.size() / looks]];
+            const vec3 p = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0f;
+            found += tree.distance(p, on) < on || winding.at(dvec3(p)) > 0.5;
+        }
+        in.push_back(2 * found > looks);
+    }
+    return in;
 }
 
 // What maps are drawn on: the file's own surface, since mending forgets texture coordinates; as much of it as
-// is kept, and right way out.
-Mesh textured(const Mesh& mesh, const BodyRecipe& recipe) {
+// is kept in `solid`, and right way out.
+Mesh textured(const Mesh& mesh, const Mesh& solid, const BodyRecipe& recipe) {
     if (mesh.uvs.empty())
         throw Error("no texture coordinates at all corners, for colour_map, normal_map or weave,",
                     file_of(recipe), "export it with them, or remove the maps");
@@ -97,15 +131,14 @@ Mesh textured(const Mesh& mesh, const BodyRecipe& recipe) {
     const std::vector<Index> first = first_in_place(mesh.positions);
     for (uvec3 t : mesh.triangles) whole.triangles.push_back({first[t.x], first[t.y], first[t.z]});
     const Parts part = parts(whole);
-    std::vector<std::size_t> faces(part.count);
-    for (Index p : part.of) ++faces[p];
-    const auto largest = Index(std::max_element(faces.begin(), faces.end()) - faces.begin());
+    const std::vector<char> kept =
+        recipe.largest ? parts_in(solid, whole, part) : std::vector<char>(part.count, true);
 
     Mesh drawn;
     std::vector<Index> place(mesh.positions.size(), none);
     const bool inside_out = !may_be_open(recipe) && volume(mesh) < 0;
     for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
-        if (recipe.largest && part.of[face] != largest) continue;
+        if (!kept[part.of[face]]) continue;
         uvec3 t = mesh.triangles[face];
         if (inside_out) std::swap(t.y, t.z);
         for (int k = 0; k < 3; ++k) {
@@ -124,19 +157,28 @@ Mesh textured(const Mesh& mesh, const BodyRecipe& recipe) {
 
 void simplify(Mesh& mesh, Work& work) {
     const BodyRecipe& recipe = work.recipe;
-    if (const int passes = recipe.smooth.value_or(recipe.volume.empty() ? 0 : 10); passes > 0) {
-        smooth(mesh, passes);
-        work.did(fmt::format("smoothed {} times", passes));
-    }
+    const bool solid = !may_be_open(recipe);
+    const double scale = std::pow(double(scale_of(mesh, recipe)), 3);
+    // A step and what it did to the volume.
+    double before = solid ? volume(mesh) : 0;
+    auto did = [&](const std::string& what, std::size_t count) {
+        if (count == 0) return;
+        const double now = solid ? volume(mesh) : 0, change = std::abs(now - before);
+        work.did(Repair{what, count, scale * change, before > 0 ? change / before : 0});
+        before = now;
+    };
+    const int passes = recipe.smooth.value_or(recipe.volume.empty() ? 0 : 10);
+    if (passes > 0) smooth(mesh, passes);
+    did("passes of smoothing", std::size_t(std::max(passes, 0)));
     if (recipe.faces <= 0) return;
-    const std::size_t went = decimate(mesh, std::size_t(recipe.faces));
+    const std::size_t most = parts(mesh).count, went = decimate(mesh, std::size_t(recipe.faces));
     if (went == 0) return;
-    work.did(fmt::format("simplified away {} faces", went));
-    if (!may_be_open(recipe)) {
-        const std::size_t cut = mend_intersections(mesh, intersections(mesh));
-        if (cut > 0) work.did(fmt::format("faces replaced that cut through each other: {}", cut));
-    }
-    if (recipe.largest) keep_largest(mesh);  // without the crumbs that simplifying may break off
+    did("faces simplified away", went);
+    if (solid)
+        did("faces replaced that cut through each other", mend_intersections(mesh, intersections(mesh)));
+    // What simplifying broke off.
+    if (solid) did("smaller parts dropped", drop_crumbs(mesh, most).parts);
+    if (!solid && recipe.largest) did("smaller parts dropped", keep_largest_sheet(mesh).parts);
     if (mesh.triangles.empty()) throw Error("no face is left", file_of(recipe), "ask for more faces");
 }
 
@@ -160,8 +202,9 @@ CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path&
     Work work{recipe, folder, progress};
     work.tell("reading", 0);
     Mesh mesh = recipe.volume.empty() ? from_file(work) : from_volume(work);
-    Mesh drawn = recipe.is_textured() ? textured(mesh, recipe) : Mesh();
+    const Mesh file = recipe.is_textured() ? mesh : Mesh();
     mend(mesh, work);
+    Mesh drawn = recipe.is_textured() ? textured(file, mesh, recipe) : Mesh();
     work.tell("simplifying the surface", 0.5);
     simplify(mesh, work);
     place(mesh, drawn, recipe);

@@ -315,6 +315,55 @@ TEST(Repair, KeepsTheLargestPartWhereAsked) {
     EXPECT_EQ(mesh.triangles, sphere(vec3(5), 1, 4).triangles);
 }
 
+const Repair& step_of(const std::vector<Repair>& steps, const std::string& what) {
+    static const Repair none;
+    for (const Repair& step : steps)
+        if (step.what == what) return step;
+    ADD_FAILURE() << "no " << what << " in " << told(steps);
+    return none;
+}
+
+TEST(Repair, WhatIsDroppedIsSaidWithItsShare) {
+    for (const float scale : {1e-20f, 1.0f, 1e9f}) {
+        Mesh mesh = both(box(vec3(0), vec3(1)), both(box(vec3(2), vec3(2.5f)), box(vec3(4), vec3(4.02f))));
+        for (vec3& p : mesh.positions) p *= scale;
+        const std::vector<Repair> steps = repair(mesh, {.specks = 0.03f, .largest = true});
+        const double whole = 1.125 + 0.02 * 0.02 * 0.02, unit = std::pow(double(scale), 3);
+        const Repair &parts = step_of(steps, "smaller parts dropped"),
+                     &specks = step_of(steps, "specks dropped");
+        EXPECT_TRUE(std::abs(parts.share - 0.125 / whole) <= 1e-5) << parts.share;
+        EXPECT_TRUE(std::abs(parts.volume / unit / 0.125 - 1) <= 1e-5) << parts.volume;
+        EXPECT_TRUE(std::abs(specks.share / (8e-6 / whole) - 1) <= 0.01) << specks.share;
+        EXPECT_EQ(mesh.triangles.size(), 12u);
+    }
+    EXPECT_EQ(in_words({"specks dropped", 3, 4.1e-7, 0.002}),
+              "specks dropped: 3 (0.2 % of the volume, 0.41 ml)");
+    EXPECT_EQ(in_words({"vertices welded", 214}), "vertices welded: 214");
+}
+
+TEST(Repair, AnOrganOfManyPartsStaysWhole) {
+    // Five boxes in a row that overlap, each smaller than the box beside them, which has most faces.
+    Mesh mesh = both(sphere({0, 5, 0}, 0.7f, 4), box(vec3(0), vec3(1)));
+    for (int i = 1; i < 5; ++i) mesh = both(mesh, box({0.9f * float(i), 0, 0}, {0.9f * float(i) + 1, 1, 1}));
+    const std::vector<Repair> steps = repair(mesh, {.largest = true, .voxel = 0.04f});
+    expect_sound(mesh);
+    EXPECT_TRUE(std::abs(volume(mesh) / 4.6 - 1) <= 0.02) << volume(mesh);
+    EXPECT_EQ(soundness(mesh).parts, 1u);
+    const double ball = volume(sphere(vec3(0), 0.7f, 4));
+    EXPECT_TRUE(std::abs(step_of(steps, "smaller parts dropped").share / (ball / (4.6 + ball)) - 1) <= 0.02);
+}
+
+TEST(Repair, LidsAndSheetsAreSaidByTheirArea) {
+    Mesh mesh = box(vec3(0), vec3(1));
+    mesh.triangles.resize(10);  // without the side at x = 1
+    mesh = both(mesh, Mesh{{vec3(3), vec3(4, 3, 3), vec3(3, 4, 3)}, {}, {{0, 1, 2}}});
+    const std::vector<Repair> steps = repair(mesh);
+    EXPECT_TRUE(std::abs(step_of(steps, "holes closed").share - 1.5 / 7) <= 1e-5)
+        << step_of(steps, "holes closed").share;  // one on the triangle, too
+    EXPECT_TRUE(std::abs(step_of(steps, "sheets dropped that enclose nothing").share - 1 / 7.0) <= 1e-5);
+    expect_sound(mesh);
+}
+
 TEST(Repair, WeldsAsFarAsTold) {
     Mesh mesh = soup(sphere(vec3(0), 1, 4));
     std::mt19937 random(2);

@@ -82,14 +82,23 @@ TEST(DropUnused, KeepsTheOthersInOrder) {
     EXPECT_EQ(mesh.triangles[0], uvec3(2, 0, 1));
 }
 
-TEST(KeepLargest, KeepsTheMostFaces) {
-    Mesh mesh = both(both(box(vec3(0), vec3(50)), sphere(vec3(100), 1, 3)), box(vec3(-9), vec3(-8)));
-    EXPECT_EQ(soundness(mesh).parts, 3u);
-    EXPECT_EQ(keep_largest(mesh), 2u);
-    EXPECT_EQ(mesh.triangles, sphere(vec3(0), 1, 3).triangles);
-    EXPECT_EQ(soundness(mesh).parts, 1u);
-    Mesh empty;
-    EXPECT_EQ(keep_largest(empty), 0u);
+TEST(DropCrumbs, KeepsSoManyOfTheLargest) {
+    const Mesh hollow = both(box(vec3(0), vec3(50)), inside_out(box(vec3(20), vec3(30))));
+    Mesh mesh = both(both(hollow, sphere(vec3(100), 1, 3)), box(vec3(-9), vec3(-8)));
+    EXPECT_EQ(drop_crumbs(mesh, 4).parts, 0u);
+    EXPECT_EQ(drop_crumbs(mesh, 2).parts, 2u);
+    EXPECT_EQ(mesh.triangles, hollow.triangles);
+}
+
+TEST(FillCavities, FillsTheSmallOnes) {
+    const Mesh ball = sphere(vec3(0), 1, 3), large = inside_out(sphere({0.3f, 0, 0}, 0.2f, 3));
+    Mesh mesh = both(both(ball, large), inside_out(sphere({-0.3f, 0, 0}, 0.05f, 2)));
+    const double before = volume(mesh);
+    const Dropped filled = fill_cavities(mesh, 0.001);
+    EXPECT_EQ(filled.parts, 1u);
+    EXPECT_TRUE(std::abs(volume(mesh) - before - filled.volume) <= 1e-7);
+    EXPECT_EQ(mesh.triangles, both(ball, large).triangles);
+    EXPECT_EQ(fill_cavities(mesh, 0.001).parts, 0u);
 }
 
 TEST(Smooth, KeepsTheVolumeOfABall) {
@@ -241,7 +250,7 @@ TEST(DropSpecks, DropsThousandsAndKeepsTheLarge) {
         for (uvec3 t : box(p, p + 0.01f).triangles) specks.triangles.push_back(t + first);
     }
     Mesh all = both(mesh, specks);
-    EXPECT_EQ(drop_specks(all, 0.01f), 3000u);
+    EXPECT_EQ(drop_specks(all, 0.01f).parts, 3000u);
     EXPECT_EQ(all.positions, mesh.positions);
     EXPECT_EQ(all.triangles, mesh.triangles);
 }
@@ -342,12 +351,13 @@ void expect_a_usable_surface(const char* name, float iso, double low_ml, double 
     Mesh mesh = isosurface(read_volume(path), iso);
     expect_closed(mesh);
     keep_largest(mesh);
+    fill_cavities(mesh, 0.001);
     const double before = volume(mesh);
     smooth(mesh, 5);
     EXPECT_LE(std::abs(volume(mesh) / before - 1), 0.01);
     expect_closed(mesh);
     decimate(mesh, 140'000);
-    keep_largest(mesh);
+    drop_crumbs(mesh, 1);
     EXPECT_LE(std::abs(volume(mesh) / before - 1), 0.01);
     EXPECT_GE(volume(mesh) * 1e6, low_ml);
     EXPECT_LE(volume(mesh) * 1e6, high_ml);

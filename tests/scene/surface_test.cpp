@@ -9,7 +9,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <sstream>
 
 namespace palpate {
 namespace {
@@ -49,6 +52,48 @@ TEST(Surface, LengthsForItsMendingCountAfterScaling) {
     EXPECT_EQ(faces[0], faces[1]);
     EXPECT_GT(faces[0], 400u);  // ten voxels across
     EXPECT_LT(faces[0], 1200u);
+}
+
+// Two boxes that overlap, 1.5 together, and one of 0.3 far from them.
+Mesh two_and_a_third() {
+    Mesh mesh = both(block(vec3(0), vec3(1), 1), block({0.5f, 0, 0}, {1.5f, 1, 1}, 1));
+    mesh = both(mesh, block({5, 0, 0}, {5.3f, 1, 1}, 8));
+    mesh.normals.clear();
+    return mesh;
+}
+
+bool is_said(const std::vector<std::string>& lines, const std::string& words) {
+    return std::ranges::any_of(lines, [&](const std::string& line) { return line.find(words) != line.npos; });
+}
+
+TEST(Surface, OfManyPartsThoseThatOverlapAreKeptAndWhatIsDroppedIsSaid) {
+    Scratch scratch;
+    write_mesh(two_and_a_third(), scratch / "boxes.ply");
+    BodyRecipe recipe;
+    recipe.surface = "boxes.ply";
+    recipe.repair.voxel = 0.02f;
+    const CleanSurface made = make_surface(recipe, scratch / "");
+    EXPECT_TRUE(std::abs(volume(made.mesh) / 1.5 - 1) <= 0.02) << volume(made.mesh);
+    EXPECT_TRUE(is_said(made.steps, "smaller parts dropped: 1 (17 % of the volume, 3e+05 ml)"))
+        << ::testing::PrintToString(made.steps);
+    EXPECT_TRUE(is_said(made.notes, "smaller parts dropped: 1 (17 % of the volume, 3e+05 ml)"));
+
+    recipe.largest = false;
+    EXPECT_FALSE(is_said(make_surface(recipe, scratch / "").steps, "dropped"));
+}
+
+TEST(Surface, LessThanAHundredthIsNoNote) {
+    Scratch scratch;
+    write_mesh(both(ellipsoid(vec3(1), 12), block(vec3(4), vec3(4.2f), 1)), scratch / "ball.ply");
+    BodyRecipe recipe;
+    recipe.surface = "ball.ply";
+    const CleanSurface made = make_surface(recipe, scratch / "");
+    EXPECT_TRUE(is_said(made.steps, "smaller parts dropped: 1 (0.2 % of the volume"))
+        << ::testing::PrintToString(made.steps);
+    EXPECT_FALSE(is_said(made.notes, "dropped"));
+    recipe.size = 0.2f;  // of what is kept
+    const std::vector<std::string> steps = make_surface(recipe, scratch / "").steps;
+    EXPECT_TRUE(is_said(steps, " % of the volume, 8 ml)")) << ::testing::PrintToString(steps);
 }
 
 // The number of a vertex of `mesh` in this place, or none.
@@ -111,6 +156,45 @@ TEST(Surface, WhatIsDrawnIsTheLargestPartTheRightWayOut) {
     EXPECT_EQ(made.drawn.positions.size(), 24u);
     EXPECT_NEAR(volume(made.drawn), 1, 1e-6);
     EXPECT_NEAR(volume(made.mesh), 1, 1e-6);
+}
+
+TEST(Surface, WhatIsDrawnIsAllThatOverlaps) {
+    Scratch scratch;
+    // A cube, another moved by half of itself, and a third that is neither larger nor near.
+    std::string text;
+    int first = 0;
+    for (const double x : {0.0, 0.5, 9.0}) {
+        std::istringstream lines(textured_cube());
+        for (std::string line; std::getline(lines, line);) {
+            std::istringstream words(line);
+            std::string kind, word;
+            words >> kind;
+            text += kind;
+            if (kind == "v") {
+                double at = 0;
+                words >> at;
+                text += ' ' + std::to_string(at + x);
+            }
+            while (words >> word) {
+                if (kind == "f") {
+                    const std::size_t slash = word.find('/');
+                    word = std::to_string(std::stoi(word) + 8 * first) + '/' +
+                           std::to_string(std::stoi(word.substr(slash + 1)) + 24 * first);
+                }
+                text += ' ' + word;
+            }
+            text += '\n';
+        }
+        ++first;
+    }
+    write_text(scratch / "cubes.obj", text);
+    BodyRecipe recipe;
+    recipe.surface = "cubes.obj";
+    recipe.weave = {4, 4};
+    recipe.repair.voxel = 0.05f;
+    const CleanSurface made = make_surface(recipe, scratch / "");
+    EXPECT_EQ(made.drawn.triangles.size(), 24u);
+    EXPECT_TRUE(std::abs(volume(made.mesh) / 1.5 - 1) <= 0.05) << volume(made.mesh);
 }
 
 TEST(Surface, MapsWantTextureCoordinates) {

@@ -1,0 +1,46 @@
+#pragma once
+#include "palpate/mesh/tree.h"
+
+#include <vector>
+
+namespace palpate {
+
+/// Goes through the pairs of leaves of a tree whose boxes are no farther apart than `reach` (m), each pair
+/// once and each leaf with itself. Those below two nodes for which skip(node, node) is true are left out.
+/// Ends early where visit(leaf, leaf) returns false; returns whether it came to the end.
+template <class Skip, class Visit>
+bool for_each_pair_of_leaves(const Tree& tree, float reach, Skip skip, Visit visit) {
+    const auto apart = [reach](const Tree::Node& a, const Tree::Node& b) {
+        return glm::any(glm::greaterThan(a.low - reach, b.high)) ||
+               glm::any(glm::greaterThan(b.low - reach, a.high));
+    };
+    std::vector<uvec2> waiting;  // pairs of nodes; a node with itself: all within it
+    if (!tree.nodes.empty()) waiting.push_back({0, 0});
+    while (!waiting.empty()) {
+        const uvec2 pair = waiting.back();
+        waiting.pop_back();
+        const Tree::Node &a = tree.nodes[pair.x], &b = tree.nodes[pair.y];
+        if (apart(a, b) || skip(pair.x, pair.y)) continue;
+        if (pair.x == pair.y && a.second != 0) {
+            const Index first = pair.x + 1;
+            waiting.insert(waiting.end(), {{first, first}, {a.second, a.second}, {first, a.second}});
+        } else if (a.second != 0 && (b.second == 0 || a.count >= b.count)) {
+            waiting.insert(waiting.end(), {{pair.x + 1, pair.y}, {a.second, pair.y}});
+        } else if (b.second != 0) {
+            waiting.insert(waiting.end(), {{pair.x, pair.y + 1}, {pair.x, b.second}});
+        } else if (!visit(pair.x, pair.y)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Calls look(i, j) for the faces of a pair of leaves, by their places in `tree.faces`, each pair once.
+template <class Look>
+void for_each_pair_of_faces(const Tree& tree, Index leaf, Index other, Look look) {
+    const Tree::Node &a = tree.nodes[leaf], &b = tree.nodes[other];
+    for (Index i = a.first; i < a.first + a.count; ++i)
+        for (Index j = leaf == other ? i + 1 : b.first; j < b.first + b.count; ++j) look(i, j);
+}
+
+}  // namespace palpate
