@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace {
 
@@ -75,7 +76,7 @@ Json describe(const Mesh& mesh) {
     return about;
 }
 
-Json describe(const Volume& volume) {
+Json describe(Volume volume) {
     const Histogram values = histogram(volume, 64);
     const mat3 d = volume.direction;
     Json about = {{"kind", "volume"},
@@ -90,8 +91,9 @@ Json describe(const Volume& volume) {
                   {"suggested_iso", nullptr},
                   {"histogram", {{"from", values.from}, {"to", values.to}, {"counts", values.counts}}}};
     if (const auto iso = suggested_iso(histogram(volume))) about["suggested_iso"] = *iso;
-    for (const double percent : {1, 25, 50, 75, 99})
-        about["percentiles"][fmt::format("{}", percent)] = percentile(values, percent);
+    constexpr double percents[] = {1, 25, 50, 75, 99};
+    const std::vector<float> at = percentiles(std::move(volume.values), percents);
+    for (std::size_t i = 0; i < at.size(); ++i) about["percentiles"][fmt::format("{}", percents[i])] = at[i];
     return about;
 }
 

@@ -6,6 +6,6 @@ void view(const std::string&, const std::vector<palpate::Change>&, palpate::ivec
 void check_view() {
     throw palpate::Error(
         "no viewer", "this build",
-        "install libglfw3-dev and libimgui-dev and build again, or add --headless to run the scene "
-        "off screen");
+        "install libglfw3-dev and libimgui-dev and build again; or run a scene off screen, with "
+        "--headless");
 }

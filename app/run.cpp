@@ -142,6 +142,9 @@ void run_scene(RunArguments& arguments, const CLI::App& command) {
     if (!arguments.integrator.empty())
         arguments.changes.push_back("simulation.integrator=\"" + arguments.integrator + "\"");
     set_size(arguments.size, arguments.settings);
+    if (arguments.scene.empty() &&
+        (arguments.headless || wants_files(arguments) || !arguments.changes.empty()))
+        throw CLI::RequiredError("scene");
     if (arguments.rest) set_rest(*arguments.rest, arguments.settings);
     const bool recorded = arguments.scene.ends_with(".json");
     if (recorded && (wants_files(arguments) || !arguments.changes.empty()))
@@ -170,12 +173,12 @@ void run_scene(RunArguments& arguments, const CLI::App& command) {
 void add_run(CLI::App& app) {
     auto arguments = std::make_shared<RunArguments>();
     RunSettings& settings = arguments->settings;
-    CLI::App* command = app.add_subcommand(
-        "run", "Open a scene in a window; or run it off screen, and write what is asked for");
-    command
-        ->add_option("scene", arguments->scene,
-                     "a TOML file, the name of a shipped scene, or a recording (.json)")
-        ->required();
+    CLI::App* command = app.add_subcommand("run",
+                                           "Open a scene, or a mesh or a volume, in a window; or run it off "
+                                           "screen, and write what is asked for");
+    command->add_option("scene", arguments->scene,
+                        "a TOML file, the name of a shipped scene, a mesh, a volume, or a recording (.json) "
+                        "[chosen in the window]");
     command->add_flag("--headless", arguments->headless,
                       "run it off screen, as any option that writes a file or says when to end does");
     command->add_option("--backend", arguments->backend, "see: palpate list backends");

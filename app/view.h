@@ -5,8 +5,8 @@
 #include <vector>
 
 /// Opens a scene in a window, until it is closed: view.cpp; or where the viewer was not built, no_view.cpp,
-/// which throws Error that says so. `file`: a scene's file or name, or a recording. `size`: of the
-/// window; `lattice`: shows the springs.
+/// which throws Error that says so. `file`: what find_scene() finds, or a recording; where it is empty, the
+/// window lets one choose. `size`: of the window; `lattice`: shows the springs.
 void view(const std::string& file, const std::vector<palpate::Change>& changes, palpate::ivec2 size,
           bool lattice);
 

@@ -96,6 +96,12 @@ double order(Integrator integrator, const Damping& damping, int steps) {
                      distance(swing(body, integrator, 2 * steps), truth));
 }
 
+bool grows(Integrator integrator, const Damping& damping, double part) {
+    const Body body = small_lattice(damping);
+    return grows(body, integrator,
+                 part * longest_step(integrator, highest_frequency(body), body.damping, body.link_damping));
+}
+
 Limit stability_limit(Integrator integrator, const Damping& damping) {
     const Body body = small_lattice(damping);
     const double frequency = highest_frequency(body);

@@ -25,7 +25,11 @@ Body chain(const Damping& damping);
 /// chain as it swings.
 double order(Integrator integrator, const Damping& damping, int steps);
 
-/// The longest stable step of a lattice whose nodes are slightly shaken, s.
+/// Whether the motion of a lattice whose nodes are slightly shaken grows with a step of this part of
+/// longest_step().
+bool grows(Integrator integrator, const Damping& damping, double part);
+
+/// The longest stable step of that lattice, s.
 struct Limit {
     double measured;   // by bisection: a step longer by half a percent lets the motion grow
     double predicted;  // longest_step()

@@ -52,6 +52,7 @@
 #include "palpate/render/picture.h"
 #include "palpate/render/renderer.h"
 #include "palpate/run/experiment.h"
+#include "palpate/run/framing.h"
 #include "palpate/run/recording.h"
 #include "palpate/run/report.h"
 #include "palpate/run/run.h"

@@ -9,10 +9,6 @@
 
 namespace palpate {
 
-/// A scene for whatever a file is: a scene itself, a mesh or a volume, which becomes one soft body on a
-/// ground. Throws Error if its ending says nothing, or it is not there.
-SceneText scene_for(const std::filesystem::path& file);
-
 /// Builds a scene on a thread of its own. Destroying it cancels, and waits until the work has noticed, which
 /// it does between two of its parts.
 class Import {

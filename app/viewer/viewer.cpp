@@ -4,6 +4,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
+#include "palpate/run/framing.h"
 #include "palpate/run/run.h"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 namespace palpate {
 namespace {
 
+constexpr float usual = 1.3f;           // times as wide as high, for which scenes choose their angles
 constexpr double calm = 0.4;            // s without motion, after which a picture is drawn in full
 constexpr long frames_per_picture = 2;  // of a film: 30 pictures a second
 const vec3 hand_colour(0.95f, 0.6f, 0.1f), proxy_colour(0.1f, 0.45f, 0.85f);
@@ -128,7 +130,7 @@ void Viewer::open_file(const std::filesystem::path& file) noexcept {
         if (file.extension() == ".json")
             replay(read_recording(file));
         else
-            open(scene_for(file));
+            open(find_scene(std::filesystem::absolute(file).string()));
     });
 }
 
@@ -164,7 +166,7 @@ void Viewer::begin(Prepared prepared) {
     readings_ = {};
     selected_.clear();
     const Scene& scene = experiment_->scene();
-    orbit_ = Orbit(camera_of(scene, experiment_->models()));
+    orbit_ = Orbit(camera_of(scene, experiment_->models(), usual));
     const Bounds box = bounds_of(experiment_->play().skins());
     options.tip = box.empty() ? 0.01f : std::clamp(0.05f * glm::length(box.size()), 0.002f, 0.5f);
     for (const ToolRecipe& tool : scene.tools)
@@ -311,7 +313,6 @@ ivec2 Viewer::view_size() const {
 }
 
 Camera Viewer::camera() const {
-    constexpr float usual = 1.3f;  // times as wide as high, for which scenes choose their angles
     Camera camera = orbit_.camera();
     const float aspect = float(view_size().x) / float(view_size().y);
     if (aspect >= usual) return camera;

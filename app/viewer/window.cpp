@@ -30,7 +30,7 @@ struct Glfw {
         glfwSetErrorCallback([](int, const char* text) { complaint = text; });
         if (!glfwInit())
             throw Error("no display to open a window on (" + complaint + ")", "the viewer",
-                        "run it on a desktop, or add --headless to run the scene off screen");
+                        "run it on a desktop; or run a scene off screen, with --headless");
     }
     ~Glfw() { glfwTerminate(); }
 };
@@ -45,7 +45,7 @@ GLFWwindow* make_window(ivec2 size, bool visible = true) {
     GLFWwindow* window = glfwCreateWindow(size.x, size.y, "Palpate", nullptr, nullptr);
     if (!window)
         throw Error("no window with OpenGL 4.5 (" + complaint + ")", "the viewer",
-                    "update the graphics driver, or add --headless to run the scene off screen");
+                    "update the graphics driver; or run a scene off screen, with --headless");
     glfwMakeContextCurrent(window);
     glfwSwapInterval(1);
     return window;

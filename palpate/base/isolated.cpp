@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <new>
 
@@ -86,13 +87,33 @@ void keep_quiet() {
     _exit(status);  // nothing of this process is to be ended twice
 }
 
-// Waits until the copy has closed its end of the pipe, which it does by ending. False if that takes too long.
-bool ends_in_time(int watched, double seconds) {
-    pollfd waiting{watched, 0, 0};
-    int found;
-    do found = poll(&waiting, 1, int(1000 * seconds));
-    while (found < 0 && errno == EINTR);
-    return found > 0;
+// Seconds of the processor's time that another process has had.
+double seconds_of(pid_t process) {
+    clockid_t clock;
+    timespec time{};
+    if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+// Why the copy was not waited for any longer.
+enum class Late { no, busy, idle };
+
+// Waits until the copy has closed its end of the pipe, which it does by ending. What counts is what it did: a
+// wait during which this process slept as well, or the machine had others to serve, is no fault of the file.
+Late wait_for(pid_t copy, int watched, const Allowance& allowance) {
+    constexpr double look = 0.02;  // s, from one look at it to the next
+    double idle = 0, before = 0;
+    for (;;) {
+        pollfd waiting{watched, 0, 0};
+        const int found = poll(&waiting, 1, int(1000 * look));
+        if (found > 0) return Late::no;
+        if (found < 0) continue;  // a signal
+        const double spent = seconds_of(copy);
+        if (spent >= allowance.seconds) return Late::busy;
+        idle = spent > before ? 0 : idle + look;
+        before = spent;
+        if (idle >= allowance.idle) return Late::idle;
+    }
 }
 
 Written mapped(int descriptor, const std::string& file) {
@@ -121,14 +142,17 @@ Written isolated(const std::string& library, const std::string& file, const Allo
     if (copy == 0) live(output.number, allowance, work);
     held.close();
 
-    const bool in_time = ends_in_time(watched.number, allowance.seconds);
-    if (!in_time) kill(copy, SIGKILL);
+    const Late late = wait_for(copy, watched.number, allowance);
+    if (late != Late::no) kill(copy, SIGKILL);
     int status = 0;
     while (waitpid(copy, &status, 0) < 0 && errno == EINTR) {}
 
     const std::string remedy = "convert it with another program";
-    if (!in_time)
+    if (late == Late::busy)
         throw Error(fmt::format("{} is not done after {:.3g} s with what is", library, allowance.seconds),
+                    file, remedy);
+    if (late == Late::idle)
+        throw Error(fmt::format("{} has stood still for {:.3g} s over what is", library, allowance.idle),
                     file, remedy);
     const int how = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     if (how == out_of_memory)

@@ -9,8 +9,9 @@ namespace palpate {
 
 /// What a piece of work in a process of its own may use.
 struct Allowance {
-    double seconds = 20;
+    double seconds = 20;                       // of the processor's time, however busy the machine is
     std::size_t bytes = std::size_t(1) << 30;  // of memory, beyond what this process has already
+    double idle = 30;  // s in a row in which it gets nothing done: it waits for what never comes
 };
 
 /// What isolated work wrote; unmapped again with the last of it.
@@ -33,7 +34,7 @@ class Written {
 /// only the copy ends. Then Error is thrown, "LIBRARY crashed on what is in FILE; ...", as is an Error that
 /// `work` throws. The copy prints nothing, and dies with this process. `library` and `file` are for messages.
 /// Other threads may go on, and may allocate; but the copy has none of them, so for a lock of their own that
-/// one holds just then it would wait until its time is up.
+/// one holds just then it would wait until that is noticed.
 Written isolated(const std::string& library, const std::string& file, const Allowance& allowance,
                  const std::function<void(std::FILE*)>& work);
 

@@ -70,18 +70,16 @@ Histogram histogram(const Volume& volume, int bins) {
     return histogram;
 }
 
-double percentile(const Histogram& histogram, double percent) {
-    double all = 0;
-    for (std::size_t n : histogram.counts) all += double(n);
-    double left = percent / 100 * all;
-    for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
-        const double here = double(histogram.counts[bin]);
-        if (here > 0 && left <= here)
-            return std::clamp(histogram.from + histogram.width() * (double(bin) + left / here),
-                              double(histogram.lowest), double(histogram.highest));
-        left -= here;
+std::vector<float> percentiles(std::vector<float>&& values, std::span<const double> percents) {
+    assert(!values.empty());
+    std::vector<float> found;
+    for (const double percent : percents) {
+        const double rank = std::ceil(percent / 100 * double(values.size()));
+        const auto nth = values.begin() + std::ptrdiff_t(std::clamp(rank, 1.0, double(values.size()))) - 1;
+        std::nth_element(values.begin(), nth, values.end());
+        found.push_back(*nth);
     }
-    return histogram.highest;
+    return found;
 }
 
 std::optional<float> suggested_iso(const Histogram& histogram) {

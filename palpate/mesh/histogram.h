@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace palpate {
@@ -23,8 +24,9 @@ struct Histogram {
 /// and the last bin count all that lie beyond.
 Histogram histogram(const Volume& volume, int bins = 256);
 
-/// The value below which so many percent of all values are, as exactly as the bins tell.
-double percentile(const Histogram& histogram, double percent);
+/// For each of these percents the smallest of the values that at least so many percent of them do not exceed
+/// (the nearest rank): always one of the values. They are taken, because they are put in another order.
+std::vector<float> percentiles(std::vector<float>&& values, std::span<const double> percents);
 
 /// A value for isosurface() that parts what is dark from what is bright: Otsu's threshold, halfway between
 /// two whole numbers if all values are whole. Nothing if all values are equal.

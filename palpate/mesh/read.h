@@ -28,8 +28,8 @@ namespace palpate {
 ///
 /// Throws Error if the file is missing, truncated, damaged, has no faces, has coordinates that are not finite
 /// or beyond a float's range, or has faces that name vertices which do not exist. Memory stays within a small
-/// multiple of the file's size, whatever the file claims; a file that assimp is not done with after 15 s, or
-/// for which it crashes, is an Error too.
+/// multiple of the file's size, whatever the file claims; a file that assimp is not done with after 15 s of
+/// the processor, or for which it crashes, is an Error too.
 Mesh read_mesh(const std::filesystem::path& path, std::optional<Units> units = {},
                std::vector<std::string>* notes = nullptr);
 
@@ -37,6 +37,9 @@ Mesh read_mesh(const std::filesystem::path& path, std::optional<Units> units = {
 /// ending and stands in messages. A format that wants other files beside it is refused.
 Mesh parse_mesh(std::string_view bytes, const std::string& name, std::optional<Units> units = {},
                 std::vector<std::string>* notes = nullptr);
+
+/// True if a name ends like a mesh's that can be read, with .gz behind or not.
+bool is_mesh(const std::filesystem::path& path);
 
 /// True if a name ends like a volume's (.nii, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, each also with .gz
 /// behind; .dcm), if the file is DICOM by what it holds, or if it is a folder.

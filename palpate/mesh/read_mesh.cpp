@@ -76,8 +76,15 @@ Draft read_draft(const Source& source, const std::string& format) {
     return named ? named->read(source) : read_with_assimp(source);
 }
 
+bool is_known(const std::string& format) { return own_format(format) || assimp_knows(format); }
+
+// A file's ending, without the .gz that may stand behind it.
+std::string format_of(const std::filesystem::path& path) {
+    return ending(ending(path) == ".gz" ? path.stem() : path);
+}
+
 void check_format(const std::string& format, const std::string& name) {
-    if (!own_format(format) && !assimp_knows(format))
+    if (!is_known(format))
         throw Error("cannot read the mesh format " + in_quotes(format), name,
                     "use .ply, .obj, .stl, .off, .gltf, .glb, .3mf, .x3d or .wrl");
 }
@@ -110,9 +117,11 @@ std::string read_unzipped(const std::filesystem::path& path) {
 
 }  // namespace
 
+bool is_mesh(const std::filesystem::path& path) { return is_known(format_of(path)); }
+
 Mesh read_mesh(const std::filesystem::path& path, std::optional<Units> units,
                std::vector<std::string>* notes) {
-    const std::string format = ending(ending(path) == ".gz" ? path.stem() : path);
+    const std::string format = format_of(path);
     check_format(format, path.string());
     try {
         std::string bytes = read_text(path);

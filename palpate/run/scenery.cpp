@@ -8,14 +8,6 @@ namespace {
 
 constexpr float collider_shine = 0.4f;
 
-vec3 middle(const Model& model) {
-    Bounds box;
-    for (vec3 p : model.surface.positions) box.include(p);
-    if (box.empty())
-        for (vec3 p : model.body.positions) box.include(p);
-    return box.centre();
-}
-
 // Behind a tip at the origin; nothing to see if it has none.
 Collider shaft_of(const ToolRecipe& tool) {
     if (!(tool.shaft > 0)) return {Sphere{}};
@@ -63,20 +55,6 @@ Scenery::Shape Scenery::shape_of(const Collider& collider, Renderer& renderer) c
 // Where a GPU moves the nodes, surfaces follow them there; normal maps want tangents, which go that way too.
 bool Scenery::mapped_where_drawn(std::size_t body) const {
     return on_gpu(made_->simulation.backend) || made_->models[body].normal_map.width > 0;
-}
-
-Camera camera_of(const Scene& scene, const Models& made) {
-    Camera camera = scene.camera;
-    if (const auto* point = std::get_if<vec3>(&scene.look_at)) {
-        camera.look_at = *point;
-        return camera;
-    }
-    const std::string& name = std::get<std::string>(scene.look_at);
-    for (const Model& model : made.models)
-        if (model.body.name == name) camera.look_at = middle(model);
-    for (const Still& still : made.stills)
-        if (still.name == name) camera.look_at = bounds(still.surface).centre();
-    return camera;
 }
 
 Picture Scenery::picture(double time, const Play& play, const Camera& camera, bool springs) {

@@ -6,9 +6,6 @@
 
 namespace palpate {
 
-/// From where a scene is looked at, at what, as it says.
-Camera camera_of(const Scene& scene, const Models& made);
-
 /// What a scene looks like: its surfaces, tools and colliders as meshes of a renderer, and a picture of them
 /// at each moment. Scene and models must outlive it.
 class Scenery {

@@ -3,6 +3,7 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/files.h"
 #include "palpate/gl/context.h"
+#include "palpate/run/framing.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, 
       settings_(settings),
       renderer_({settings.width, settings.height}, context),
       scenery_(scene, made, renderer_),
-      camera_(camera_of(scene, made)) {
+      camera_(camera_of(scene, made, float(settings.width) / float(settings.height))) {
     if (!settings.video.empty())
         film_ = std::make_unique<Film>(settings.video, settings.width, settings.height, pictures_per_second);
 }

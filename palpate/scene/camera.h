@@ -12,6 +12,10 @@ struct Camera {
     bool orthographic = false;  // then the picture is as high as `angle` shows at look_at
 };
 
+/// The axes of what stands upright where `up` (any length) is up: to the right, up, and towards somebody in
+/// front of it. Where y is up they are x, y and z; where z is up, x, z and -y.
+mat3 upright(vec3 up);
+
 /// A light as far away as the sun.
 struct Light {
     vec3 direction = vec3(0.55f, -1.0f, -0.35f);  // in which the light travels; need not be unit

@@ -272,7 +272,7 @@ void check(Scene& scene, const SceneSource& source) {
     }
     if (scene.tools.size() > 8) source.fail(0, "more than 8 tools", "use fewer");
     if (scene.colliders.size() > 16) source.fail(0, "more than 16 colliders", "use fewer");
-    if (const auto* at = std::get_if<std::string>(&scene.look_at); at && !names.contains(*at))
+    if (const auto* at = std::get_if<std::string>(&scene.camera.look_at); at && !names.contains(*at))
         source.fail(0, "camera.look_at names no body or surface: " + *at,
                     "name one of them, or give a point");
     if (!(glm::length(scene.camera.up) > 0))

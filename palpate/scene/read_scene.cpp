@@ -1,4 +1,3 @@
-#include "palpate/base/files.h"
 #include "palpate/body/influences.h"
 #include "palpate/scene/check.h"
 #include "palpate/scene/scene.h"
@@ -306,7 +305,7 @@ void read_step(Reader& read, double& step) {
 }
 
 // A point, or the name of a body.
-void read_look_at(Reader& read, std::variant<vec3, std::string>& look_at) {
+void read_look_at(Reader& read, std::variant<std::monostate, vec3, std::string>& look_at) {
     const toml::node* node = read.get("look_at");
     if (!node) return;
     if (const auto name = node->value_exact<std::string>()) {
@@ -320,7 +319,7 @@ void read_camera(Reader& read, Scene& scene) {
     read("eye", scene.camera.eye);
     read("up", scene.camera.up);
     read("angle", scene.camera.angle, between(0.01, 179, "degrees", "35 is usual"));
-    read_look_at(read, scene.look_at);
+    read_look_at(read, scene.camera.look_at);
     std::string projection = scene.camera.orthographic ? "orthographic" : "perspective";
     read("projection", projection);
     if (projection != "orthographic" && projection != "perspective")
@@ -351,6 +350,7 @@ void read_fields(Reader& read, Scene& scene) {
     });
     if (still_air) scene.simulation.air = *still_air;
     read.table_or_none("camera", [&](Reader& inside) { read_camera(inside, scene); });
+    scene.light.direction = upright(sky(scene)) * scene.light.direction;
     read.table_or_none("light", [&](Reader& inside) {
         inside("direction", scene.light.direction);
         inside.colour("colour", scene.light.colour, 10);
@@ -551,19 +551,6 @@ std::string changed(const SceneText& scene, std::span<const Change> changes) {
     std::ostringstream text;
     text << changed_table(scene.text, SceneSource{scene.name}, changes) << '\n';
     return text.str();
-}
-
-SceneText find_scene(const std::string& file_or_name) {
-    for (const ShippedScene& shipped : shipped_scenes())
-        if (shipped.name == file_or_name)
-            return {shipped.text, shipped.name, std::filesystem::current_path()};
-    if (std::error_code error; !std::filesystem::exists(file_or_name, error)) {
-        std::string list;
-        for (const ShippedScene& shipped : shipped_scenes())
-            list += (list.empty() ? "" : ", ") + shipped.name;
-        throw Error("no such scene", file_or_name, "give a TOML file, or one of: " + list);
-    }
-    return {read_text(file_or_name), file_or_name, std::filesystem::path(file_or_name).parent_path()};
 }
 
 Scene read_scene(const std::string& file_or_name, std::span<const Change> changes) {

@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/names.h"
 
+#include <cmath>
 #include <cstdlib>
 
 namespace palpate {
@@ -23,6 +24,12 @@ std::optional<std::filesystem::path> find(const std::string& name, const std::fi
 }
 
 }  // namespace
+
+vec3 sky(const Scene& scene) {
+    const vec3 up = scene.camera.up.value_or(-scene.simulation.gravity);
+    const float length = glm::length(up);
+    return length > 0 && std::isfinite(length) ? up / length : vec3(0, 1, 0);
+}
 
 bool is_found(const std::string& name, const std::filesystem::path& folder) {
     return find(name, folder).has_value();

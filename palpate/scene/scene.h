@@ -178,6 +178,16 @@ struct ToolRecipe {
     bool operator==(const ToolRecipe&) const = default;
 };
 
+/// From where it is looked at. What is not given is found when there is something to see: run/framing.h.
+struct CameraRecipe {
+    std::optional<vec3> eye;  // m
+    std::variant<std::monostate, vec3, std::string>
+        look_at;                   // a point, m, or the name of a body or a surface
+    std::optional<vec3> up;        // else against gravity
+    float angle = Camera{}.angle;  // degrees
+    bool orthographic = false;
+};
+
 /// All that a scene's file says.
 struct Scene {
     std::string name;              // of the file, without its ending
@@ -186,8 +196,7 @@ struct Scene {
     Simulation simulation;         // without what build() adds: colliders, contact and pull
     double duration = 5;           // s, of a run that is not told otherwise
     Path wind;                     // its velocity over time, m/s; empty: none
-    Camera camera;
-    std::variant<vec3, std::string> look_at = vec3(0);  // a point, or the name of a body
+    CameraRecipe camera;
     Light light;
     std::vector<BodyRecipe> bodies;
     std::vector<BodyRecipe>
@@ -197,6 +206,9 @@ struct Scene {
     std::vector<ToolRecipe> tools;
     std::vector<std::string> notes;  // what looks wrong in the file: a number whose unit may be another
 };
+
+/// Where up is: as the camera says, else against gravity, else along y. Unit.
+vec3 sky(const Scene& scene);
 
 /// A change from outside the file: `body.brain.nodes=5000`. `collider.3={ plane = {} }` adds a third of two.
 /// One that names another source for a body (volume, surface, dims, cloth) takes away what was said of the
@@ -210,14 +222,16 @@ struct SceneText {
     std::filesystem::path folder;  // that files are named from
 };
 
-/// The text of a scene: the path of a TOML file, or the name of a shipped scene. Throws Error.
+/// The text of a scene: the name of a shipped scene, the path of a TOML file; or of a mesh or a volume, which
+/// becomes one soft body of 0.2 m that is held below. Throws Error if there is none, or the name's ending
+/// says nothing.
 SceneText find_scene(const std::string& file_or_name);
 
 /// Its text with changes made, to be saved: TOML that reads as the same scene. Comments, and the order of
 /// keys, are lost. Throws Error.
 std::string changed(const SceneText& scene, std::span<const Change> changes);
 
-/// Reads a scene: the path of a TOML file, or the name of a shipped scene. Changes are made before it is
+/// Reads a scene that find_scene() finds. Changes are made before it is
 /// checked. Throws Error with the file, the line and the nearest known key where something does not fit.
 Scene read_scene(const std::string& file_or_name, std::span<const Change> changes = {});
 

@@ -20,7 +20,9 @@ bool have_brain() { return std::filesystem::exists(brain); }
 TEST(Command, UsageErrorsEndWithTwo) {
     for (const char* arguments : {"",
                                   "fly",
-                                  "run",
+                                  "run --headless",
+                                  "run --frames 3",
+                                  "run --set body.1.nodes=5",
                                   "run box --frames many",
                                   "run box --size 12",
                                   "run box --fast",
@@ -78,6 +80,46 @@ TEST(Command, RunsAndReports) {
     EXPECT_EQ(outcome.status, 0) << outcome.said;
     EXPECT_NE(outcome.said.find("nodes, springs"), std::string::npos);
     EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": false"), std::string::npos);
+}
+
+TEST(Command, RunsAMeshOrAVolume) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(50, 40, 60), 10), scratch / "a \"ball\".ply");
+    std::string voxels = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencoding: raw\n\n";
+    for (int i = 0; i < 12 * 12 * 12; ++i)
+        voxels += char(glm::length(vec3(i % 12, i / 12 % 12, i / 144) - 5.5f) < 4 ? 200 : 10);
+    write_text(scratch / "ball.nrrd", voxels);
+    for (const char* file : {"a \"ball\".ply", "ball.nrrd"}) {
+        const Outcome outcome =
+            palpate("run '" + (scratch / file).string() + "' --frames 2 --set body.it.nodes=300 --report " +
+                    (scratch / "r.json").string());
+        EXPECT_EQ(outcome.status, 0) << outcome.said;
+        const auto report = nlohmann::json::parse(read_text(scratch / "r.json"));
+        EXPECT_EQ(report["bodies"][0]["name"], "it");
+        EXPECT_GT(report["bodies"][0]["nodes"], 200);
+    }
+    expect_one_line(palpate("run '" + (scratch / "ball.xyz").string() + "' --frames 2"),
+                    {"ball.xyz", "no such"});
+    write_text(scratch / "ball.xyz", "0 0 0");
+    expect_one_line(palpate("run '" + (scratch / "ball.xyz").string() + "' --frames 2"),
+                    {"ball.xyz", ".toml"});
+    expect_one_line(palpate("run '" + (scratch / ".").string() + "' --frames 2"), {"no DICOM"});
+    // Where there is no display, it says what can be done.
+    for (const std::string& file : {std::string(), "'" + (scratch / "ball.nrrd").string() + "'"})
+        expect_one_line(shell("env -u DISPLAY -u WAYLAND_DISPLAY " PALPATE_COMMAND " run " + file),
+                        {"--headless"});
+}
+
+TEST(Command, InfoTellsPercentilesOfTheValues) {
+    Scratch scratch;
+    std::string voxels = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 10 10 10\nencoding: raw\n\n";
+    for (int i = 0; i < 1000; ++i) voxels += char(i < 700 ? 0 : i % 250);
+    write_text(scratch / "v.nrrd", voxels);
+    const auto about =
+        nlohmann::json::parse(palpate("info --json " + (scratch / "v.nrrd").string()).said)["percentiles"];
+    EXPECT_EQ(about["25"], 0);
+    EXPECT_EQ(about["50"], 0);
+    EXPECT_EQ(about["99"], 239);
 }
 
 TEST(Command, TheSameNodesOnAnyNumberOfThreads) {

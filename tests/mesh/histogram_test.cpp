@@ -58,16 +58,31 @@ TEST(Histogram, GivesWholeNumbersABinEach) {
     EXPECT_EQ(h.to, 3.5);
 }
 
-TEST(Histogram, PercentilesAreThoseOfTheSortedValues) {
-    const Volume volume = two_bells(20000, 100, 10000, 400, 30);
-    const Histogram h = histogram(volume);
-    std::vector<float> sorted = volume.values;
+TEST(Percentiles, AreThoseOfTheSortedValues) {
+    const std::vector<double> percents{99, 0, 0.1, 25, 50, 66, 99.9, 1, 100};  // in any order
+    const std::vector<float> values = two_bells(2000, 100, 1000, 400, 30).values;
+    std::vector<float> sorted = values;
     std::sort(sorted.begin(), sorted.end());
-    for (double percent : {0.1, 1.0, 25.0, 50.0, 66.0, 99.0, 99.9})
-        EXPECT_LE(std::abs(percentile(h, percent) - double(sorted[std::size_t(300 * percent)])), h.width())
-            << percent;
-    EXPECT_LE(std::abs(percentile(h, 0) - double(sorted.front())), h.width());
-    EXPECT_LE(std::abs(percentile(h, 100) - double(sorted.back())), h.width());
+    const std::vector<float> found = percentiles(std::vector(values), percents);
+    ASSERT_EQ(found.size(), percents.size());
+    for (std::size_t i = 0; i < percents.size(); ++i) {
+        // So many do not exceed it, and of what is smaller that is not so.
+        const double wanted = percents[i] / 100 * double(values.size());
+        const auto below = std::lower_bound(sorted.begin(), sorted.end(), found[i]) - sorted.begin();
+        const auto up_to = std::upper_bound(sorted.begin(), sorted.end(), found[i]) - sorted.begin();
+        EXPECT_GE(double(up_to), wanted - 1e-9) << percents[i];
+        EXPECT_TRUE(double(below) < wanted || below == 0) << percents[i];
+    }
+}
+
+TEST(Percentiles, OfWholeNumbersAreWholeNumbers) {
+    // As most of an image of a head: air, in more different values than a table of bars has bars.
+    std::vector<float> values(700, 0);
+    for (int i = 0; i < 300; ++i) values.push_back(float(100 + 3 * i));
+    EXPECT_EQ(percentiles(std::move(values), std::vector<double>{1, 25, 50, 70, 75, 99}),
+              (std::vector<float>{0, 0, 0, 0, 247, 967}));
+    EXPECT_EQ(percentiles({16777215, -3, 5}, std::vector<double>{1, 50, 99}),
+              (std::vector<float>{-3, 5, 16777215}));
 }
 
 // Of two bells of one width and height, the best threshold is halfway.

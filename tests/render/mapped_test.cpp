@@ -283,7 +283,7 @@ TEST_F(MappedPictures, AreThoseOfTheHost) {
             if (!can(c.body, mapping)) continue;
             const Embedding skin = embed(c.surface, c.body, mapping);
             const int number = renderer_->add(c.surface, skin);
-            for (const Deformation* d : {&c.twisted, &c.bent}) {
+            for (const Deformation* d : {number % 2 == 0 ? &c.twisted : &c.bent}) {  // by turns
                 const std::vector<vec3> nodes = (*d)(c.body.positions),
                                         normals = approximate_normals(c.body, nodes);
                 const NodeBuffers buffers(nodes, normals);

@@ -621,30 +621,6 @@ TEST(Plot, PowersLieOnALineWhereAxesAreLogarithmic) {
     EXPECT_LT(y[3] - y[0], -200);
 }
 
-// All that a shipped scene does in its first third of a second, with its surface written, goes well.
-TEST(Run, EveryShippedSceneStarts) {
-    Scratch scratch;
-    for (const ShippedScene& shipped : shipped_scenes()) {
-        const Scene scene = read_scene(shipped.name);
-        const BodyRecipe& body = scene.bodies.empty() ? scene.surfaces[0] : scene.bodies[0];
-        const std::string& file = body.volume.empty() ? body.surface : body.volume;
-        if (!file.empty() && !is_found(file, scene.folder) &&
-            !(body.stand_ins.size() == 1 && is_found(body.stand_ins[0], scene.folder))) {
-            std::printf("%s: %s is not available\n", shipped.name.c_str(), file.c_str());
-            continue;
-        }
-        RunSettings settings;
-        settings.frames = 20;
-        settings.surface = scratch / "end.ply";
-        const Report report = run(scene, settings);
-        EXPECT_FALSE(report.diverged) << shipped.name;
-        if (report.bodies.size() > 1) settings.surface = scratch / ("end-" + report.bodies[0].name + ".ply");
-        EXPECT_EQ(report.bodies[0].inverted_cells, 0u) << shipped.name;
-        EXPECT_EQ(read_mesh(settings.surface, Units::metres).triangles.size(), report.bodies[0].faces)
-            << shipped.name;
-    }
-}
-
 // The slab that one scene writes is what the other folds: its two ends have gone down by what 30° take.
 TEST(Run, TheFiguresOfTheDocsRun) {
     Scratch scratch;

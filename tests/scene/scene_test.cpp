@@ -3,8 +3,6 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/scene/build.h"
-#include "palpate/solver/solver.h"
-#include "palpate/solver/stability.h"
 #include "tests/scratch.h"
 
 #include <gtest/gtest.h>
@@ -78,7 +76,7 @@ path = [[0, 0, 0, 0], [1, 0.1, 0, 0]]
     EXPECT_EQ(scene.simulation.integrator, Integrator::semi_implicit_euler);
     EXPECT_EQ(scene.simulation.step, 0.001);
     EXPECT_EQ(scene.simulation.gravity, vec3(0, 0, -9.81f));
-    EXPECT_EQ(std::get<vec3>(scene.look_at), vec3(0, 0.5f, 0));
+    EXPECT_EQ(std::get<vec3>(scene.camera.look_at), vec3(0, 0.5f, 0));
     EXPECT_TRUE(scene.camera.orthographic);
     const BodyRecipe& brain = scene.bodies.at(0);
     EXPECT_EQ(brain.iso, 60.5f);
@@ -646,78 +644,6 @@ TEST(Path, TurnsEvenlyInDegrees) {
         write_text(scratch / "bad.csv", bad);
         EXPECT_THROW(read_path(scratch / "bad.csv", Rows::poses), Error) << bad;
     }
-}
-
-class Shipped : public ::testing::TestWithParam<std::string> {};
-class Tissue : public Shipped {};
-std::vector<std::string> shipped_names() {
-    std::vector<std::string> names;
-    for (const ShippedScene& scene : shipped_scenes()) names.push_back(scene.name);
-    return names;
-}
-INSTANTIATE_TEST_SUITE_P(Every, Shipped, ::testing::ValuesIn(shipped_names()),
-                         [](const auto& each) { return each.param; });
-INSTANTIATE_TEST_SUITE_P(Shipped, Tissue, ::testing::Values("brain", "head", "box"),
-                         [](const auto& each) { return each.param; });
-
-// The first file that a scene wants and this machine lacks, or nothing.
-std::string missing_file(const Scene& scene) {
-    std::vector<BodyRecipe> all = scene.bodies;
-    all.insert(all.end(), scene.surfaces.begin(), scene.surfaces.end());
-    for (const BodyRecipe& body : all) {
-        std::vector<std::string> files = body.stand_ins;
-        files.insert(files.begin(), body.volume.empty() ? body.surface : body.volume);
-        const bool found = std::any_of(files.begin(), files.end(), [&](const std::string& file) {
-            return file.empty() || is_found(file, scene.folder);
-        });
-        if (!found) return files[0];
-        for (const std::string& map : {body.colour_map, body.normal_map})
-            if (!map.empty() && !is_found(map, scene.folder)) return map;
-    }
-    return "";
-}
-
-TEST_P(Shipped, BuildsAsItSays) {
-    const Scene scene = read_scene(GetParam());
-    if (const std::string file = missing_file(scene); !file.empty())
-        GTEST_SKIP() << file << " is not available";
-    const Models made = build(scene);
-    std::size_t held = 0;
-    for (std::size_t m = 0; m < made.models.size(); ++m) {
-        const BodyRecipe& recipe = scene.bodies[m];
-        const Body& body = made.models[m].body;
-        const Mesh& surface = made.models[m].surface;
-        if (!recipe.dims && !recipe.cloth && !recipe.cage)
-            EXPECT_LE(std::abs(double(body.count()) / recipe.nodes - 1), 0.05);
-        EXPECT_GT(surface.triangles.size(), 0u);
-        for (float inverse : body.inverse_mass) held += inverse == 0;
-        if (!recipe.cage) EXPECT_LT(held, body.count() / 2);
-    }
-    for (const Still& still : made.stills) EXPECT_GT(still.surface.triangles.size(), 0u);
-    if (scene.bodies.empty()) return;
-    if (scene.colliders.empty()) EXPECT_GT(held, 0u);  // else it may stand on one
-    // The heart's vessels end openly, and the dragon may stand in for itself; notes say so.
-    if (scene.bodies[0].stand_ins.empty()) EXPECT_TRUE(made.notes.empty()) << made.notes[0];
-}
-
-// 10,000 steps of the automatic length: nothing blows up, and what is damped comes to rest.
-TEST_P(Tissue, IsStableAtTheAutomaticStep) {
-    const Scene scene = read_scene(GetParam());
-    if (const std::string file = missing_file(scene); !file.empty())
-        GTEST_SKIP() << file << " is not available";
-    const Models made = build(scene);
-    for (const Model& model : made.models)
-        for (Integrator integrator : {Integrator::verlet, Integrator::semi_implicit_euler}) {
-            Simulation simulation = made.simulation;
-            simulation.integrator = integrator;
-            auto solver = make_solver(model.body, simulation);
-            Stats stats;
-            for (int steps = 0; steps < 10'000; steps += stats.steps) {
-                stats = solver->step(0.1);
-                ASSERT_FALSE(stats.diverged) << name_of(integrator) << " after " << steps;
-            }
-            EXPECT_LE(stats.largest_speed, 0.02) << name_of(integrator);
-        }
 }
 
 }  // namespace

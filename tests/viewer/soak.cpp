@@ -2,6 +2,7 @@
 // grows.
 //   viewer_soak [MINUTES] [SEED]
 #include "app/viewer/window.h"
+#include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"

@@ -3,7 +3,6 @@
 #include "app/viewer/viewer.h"
 
 #include "app/viewer/gui.h"
-#include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/gl/context.h"
@@ -261,14 +260,11 @@ TEST_F(ViewerTest, TheHandThatDentsFeelsAndIsSeen) {
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
     viewer.press(Button::left);
-    const double start = now();
-    while (viewer.feeling()->felt().count == 0 && now() - start < 20) viewer.advance(1);
-    EXPECT_GT(viewer.feeling()->felt().count, 0);
+    wait_until(viewer, 1, [&] { return viewer.feeling()->felt().count > 0; });
     EXPECT_GT(difference(viewer.image(), before), 0.03);
     EXPECT_GT(viewer.feeling()->timing().periods.count(), 0u);
     viewer.release(Button::left);
-    while (viewer.feeling()->felt().count > 0 && now() - start < 40) viewer.advance(1);
-    EXPECT_EQ(viewer.feeling()->felt().count, 0);
+    wait_until(viewer, 1, [&] { return viewer.feeling()->felt().count == 0; });
     viewer.options.mode = Mode::pull;
     viewer.advance(1);
     EXPECT_FALSE(viewer.feeling());
@@ -383,8 +379,7 @@ TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     viewer.options.device_file = (scratch / "path.csv").string();
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
-    const double start = now();
-    while (viewer.feeling()->felt().time == 0 && now() - start < 10) viewer.advance(1);
+    wait_until(viewer, 1, [&] { return viewer.feeling()->felt().time != 0; });
     EXPECT_TRUE(glm::distance(viewer.feeling()->felt().hand, vec3(0.1f, 0.2f, 0.02f)) < 1e-4f);
 }
 
@@ -392,19 +387,17 @@ TEST_F(ViewerTest, ADevicePressesAndPullsAsWell) {
     open("box", {"simulation.gravity=[0,0,0]"});
     const Scratch scratch;
     // It comes down on the beam's upper side, waits, and goes up.
-    write_text(scratch / "path.csv", "0,0.15,0.09,0.025\n0.3,0.15,0.045,0.025\n60,0.15,0.045,0.025\n");
+    write_text(scratch / "path.csv", "0,0.15,0.09,0.025\n0.3,0.15,0.045,0.025\n6000,0.15,0.045,0.025\n");
     viewer.options.device = DeviceKind::script;
     viewer.options.device_file = (scratch / "path.csv").string();
     viewer.options.mode = Mode::press;
     const double before = state().positions[456].y;
-    const double start = now();
-    while (state().positions[456].y > before - 0.001 && now() - start < 20) viewer.advance(1);
-    EXPECT_LT(state().positions[456].y, before - 0.001) << viewer.message().text;
+    wait_until(viewer, 1, [&] { return state().positions[456].y < before - 0.001; });
     ASSERT_EQ(viewer.arrows().size(), 1u);
     EXPECT_GT(viewer.arrows()[0].force.y, 0);
     viewer.options.device_file = (scratch / "path.csv").string();
     viewer.options.mode = Mode::pull;
-    while ((viewer.holds().empty() || viewer.holds()[0].presses()) && now() - start < 40) viewer.advance(1);
+    wait_until(viewer, 1, [&] { return !viewer.holds().empty() && !viewer.holds()[0].presses(); });
     ASSERT_EQ(viewer.holds().size(), 1u);
     EXPECT_GT(viewer.holds()[0].pulls(), 0u);
     viewer.options.device = DeviceKind::mouse;
@@ -537,6 +530,12 @@ TEST_F(ViewerTest, AMeshBecomesABodyAndCanBeCancelled) {
     wait_until_open(viewer);
     ASSERT_TRUE(viewer.experiment()) << viewer.message().text;
     EXPECT_GT(viewer.experiment()->models().models[0].body.count(), 1000u);
+    // It is the scene that the command runs off screen, and all of it is seen.
+    EXPECT_EQ(viewer.experiment()->source().text, find_scene((scratch / "ball.ply").string()).text);
+    for (vec3 p : viewer.experiment()->play().skins()[0].positions) {
+        const vec2 at = *pixel_of(viewer.camera(), p, size);
+        ASSERT_TRUE(at.x > 0 && at.x < float(size.x) && at.y > 0 && at.y < float(size.y));
+    }
     viewer.advance(2);
     viewer.open_file(scratch / "ball.ply");  // and is destroyed while it opens another
 }

@@ -2,7 +2,6 @@
 // server makes them.
 #include "app/viewer/window.h"
 
-#include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
@@ -26,6 +25,12 @@
 namespace palpate {
 namespace {
 
+// The rows between the hint above and the messages below, which come and go with time.
+std::vector<std::uint8_t> middle_rows(const std::vector<std::uint8_t>& pixels) {
+    const auto quarter = std::ptrdiff_t(pixels.size() / 4);
+    return {pixels.begin() + quarter, pixels.end() - quarter};
+}
+
 double difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
     if (a.size() != b.size() || a.empty()) return NAN;
     double sum = 0;
@@ -48,8 +53,7 @@ class WindowTest : public testing::Test {
     }
     void open(const char* scene) {
         window->viewer().open(find_scene(scene));
-        const double start = now();
-        while (window->viewer().importing() && now() - start < 60) rounds(1);
+        while (window->viewer().importing()) rounds(1);
         ASSERT_TRUE(window->viewer().experiment()) << window->viewer().message().text;
         rounds(3);
     }
@@ -82,14 +86,13 @@ TEST_F(WindowTest, OpensTurnsAndComesBack) {
     rounds(3);
     ASSERT_TRUE(viewer().options.paused);
     const vec3 eye = viewer().camera().eye;
-    // The hint and the messages lie over the picture until they go.
     rounds(2);
-    const auto before = person->look();
+    const auto before = middle_rows(person->look());
     drag(vec2(30, 440), vec2(200, 380), 3);
     person->button(3, false);
     rounds(3);
     EXPECT_GT(glm::distance(viewer().camera().eye, eye), 0.05f);
-    EXPECT_GT(difference(person->look(), before), 1);
+    EXPECT_GT(difference(middle_rows(person->look()), before), 1);
     person->button(4, true), person->button(4, false);  // the wheel
     rounds(2);
     EXPECT_LT(glm::distance(viewer().camera().eye, viewer().camera().look_at),
@@ -97,7 +100,7 @@ TEST_F(WindowTest, OpensTurnsAndComesBack) {
     person->key(XK_Home);
     rounds(3);
     EXPECT_EQ(viewer().camera().eye, eye);
-    EXPECT_TRUE(difference(person->look(), before) < 1) << difference(person->look(), before);
+    EXPECT_TRUE(difference(middle_rows(person->look()), before) < 1);
 }
 
 TEST_F(WindowTest, GrabsDragsAndReleasesWhileTheBackendChanges) {
@@ -144,13 +147,12 @@ TEST_F(WindowTest, ABrokenFileIsDroppedThenAGoodOne) {
     open("box");
     write_text(scratch / "broken.ply", "ply\nformat ascii 1.0\n");
     person->drop((scratch / "broken.ply").string(), [&] { rounds(1); });
-    const double start = now();
-    while (!viewer().message().bad && now() - start < 20) rounds(1);
+    while (!viewer().message().bad) rounds(1);
     EXPECT_NE(viewer().message().text.find("broken.ply"), std::string::npos) << viewer().message().text;
     EXPECT_EQ(viewer().experiment()->source().name, "box");
     write_mesh(ellipsoid(vec3(0.1f), 12), scratch / "ball.ply");
     person->drop((scratch / "ball.ply").string(), [&] { rounds(1); });
-    while (viewer().experiment()->source().name == "box" && now() - start < 60) rounds(1);
+    while (viewer().experiment()->source().name == "box") rounds(1);
     EXPECT_EQ(viewer().experiment()->source().name, "ball") << viewer().message().text;
 }
 

@@ -1,0 +1,70 @@
+#include "palpate/base/error.h"
+#include "palpate/base/files.h"
+#include "palpate/mesh/ending.h"
+#include "palpate/mesh/read.h"
+#include "palpate/scene/scene.h"
+
+#include <fmt/format.h>
+
+namespace palpate {
+namespace {
+
+std::string all_shipped() {
+    std::string list;
+    for (const ShippedScene& shipped : shipped_scenes()) list += (list.empty() ? "" : ", ") + shipped.name;
+    return list;
+}
+
+// A file's name as TOML writes it.
+std::string quoted(const std::filesystem::path& file) {
+    std::string text = "\"";
+    for (char c : file.string()) {
+        if (c == '"' || c == '\\') text += '\\';
+        if (static_cast<unsigned char>(c) < 0x20)
+            text += fmt::format("\\u{:04x}", int(c));
+        else
+            text += c;
+    }
+    return text + '"';
+}
+
+// Whatever size it had, it is two decimetres long then: so that step and hand suit it.
+SceneText scene_around(const char* kind, const std::filesystem::path& file) {
+    return {fmt::format(R"([[body]]
+name = "it"
+{} = {}
+size = 0.2
+centre = true
+nodes = 5000
+youngs_modulus = 5000
+density = 1000
+damping = 2
+pin = {{ below = 0.1 }}
+)",
+                        kind, quoted(file)),
+            file.stem().string(), file.parent_path()};
+}
+
+}  // namespace
+
+SceneText find_scene(const std::string& file_or_name) {
+    for (const ShippedScene& shipped : shipped_scenes())
+        if (shipped.name == file_or_name)
+            return {shipped.text, shipped.name, std::filesystem::current_path()};
+    std::error_code error;
+    if (!std::filesystem::exists(file_or_name, error))
+        throw Error("no such scene or file", file_or_name,
+                    "give a scene (.toml), a mesh, a volume, or one of: " + all_shipped());
+    const std::filesystem::path file = file_or_name;
+    const bool named_so = ending(file) == ".toml";
+    if (!named_so && is_volume(file)) return scene_around("volume", std::filesystem::absolute(file));
+    if (!named_so && is_mesh(file)) return scene_around("surface", std::filesystem::absolute(file));
+    if (std::filesystem::is_directory(file, error))
+        throw Error("no DICOM series in the folder", file_or_name, "name a file, or another folder");
+    if (!named_so && file.has_extension())
+        throw Error("neither a scene nor a mesh nor a volume by its ending", file_or_name,
+                    "a scene ends in .toml; meshes and volumes are listed in docs/import.md");
+    return {read_text(file_or_name), file_or_name, file.parent_path()};
+}
+
+}  // namespace palpate
