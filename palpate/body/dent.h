@@ -36,9 +36,10 @@ vec3 dented(std::span<const Dent> dents, vec3 place, vec3 normal);
 /// radius R, off by about depth / R of the turn (docs/results.md has the table).
 vec3 dented_normal(std::span<const Dent> dents, vec3 place, vec3 normal);
 
-/// How deep dents of that width may be all together, m: 1.2 times their width. A surface slopes by 36° in them
-/// then. Up to 1.65 widths (√e) no two places of space come together, if all of it moves one way; a surface's
-/// places move along its own normals, so it folds over where its radius is smaller than the dent is deep.
+/// How deep dents of that width may be all together, m: 1.2 times their width. A surface slopes by 36° in
+/// them then. Up to 1.65 widths (√e) no two places of space come together, if all of it moves one way; a
+/// surface's places move along its own normals, so it folds over where its radius is smaller than the dent is
+/// deep.
 double deepest_dent(double width);
 
 /// How far they move any place at most, m.

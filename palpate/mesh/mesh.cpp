@@ -106,7 +106,7 @@ void check(const Mesh& mesh, std::string_view where) {
         if (std::max({t.x, t.y, t.z}) >= count)
             throw Error("a triangle with a vertex that is not there", where, "count vertices from 0");
     for (vec3 p : mesh.positions)
-        if (!std::isfinite(p.x + p.y + p.z))
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
             throw Error("a vertex at a place that is not finite", where, "give places in m");
 }
 

@@ -217,14 +217,16 @@ class Morphs : public Sequence {
 // Any of them, with pictures that fit it.
 class Checked : public Sequence {
  public:
-    Checked(const Mesh& mesh, const std::filesystem::path& path, std::unique_ptr<Sequence> sequence)
+    Checked(const Mesh& mesh, bool keeps_normals, const std::filesystem::path& path,
+            std::unique_ptr<Sequence> sequence)
         : vertices_(mesh.positions.size()),
-          has_normals_(!mesh.normals.empty()),
+          wants_normals_(keeps_normals && !mesh.normals.empty()),
           path_(path),
           sequence_(std::move(sequence)) {}
 
     void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) override {
-        if (positions.size() != vertices_ || (has_normals_ && normals.size() != vertices_))
+        const bool lacks_normals = normals.empty() ? wants_normals_ : normals.size() != vertices_;
+        if (positions.size() != vertices_ || lacks_normals)
             throw Error("a picture of another number of vertices than the sequence's", path_.string(),
                         "give every vertex of the mesh a position, and a normal if the mesh has them");
         if (!(std::isfinite(time) && time > last_))
@@ -237,7 +239,7 @@ class Checked : public Sequence {
 
  private:
     std::size_t vertices_;
-    bool has_normals_;
+    bool wants_normals_;
     std::filesystem::path path_;
     std::unique_ptr<Sequence> sequence_;
     double last_ = -std::numeric_limits<double>::infinity();  // s
@@ -266,7 +268,7 @@ std::unique_ptr<Sequence> make_sequence(const Mesh& mesh, const std::filesystem:
     if (kind == Kind::numbered) sequence = std::make_unique<Numbered>(mesh, path, pictures);
     if (kind == Kind::cache) sequence = std::make_unique<Cache>(mesh, path);
     if (kind == Kind::morphs) sequence = std::make_unique<Morphs>(mesh, path, pictures);
-    return std::make_unique<Checked>(mesh, path, std::move(sequence));
+    return std::make_unique<Checked>(mesh, kind != Kind::cache, path, std::move(sequence));
 }
 
 }  // namespace palpate

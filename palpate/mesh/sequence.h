@@ -16,8 +16,8 @@ class Sequence {
     virtual ~Sequence() = default;
 
     /// The next picture: where the mesh's vertices are at `time` (s, later than the last one's), and their
-    /// normals, if the mesh has any. Throws Error if they are another number or not later, if the disk is
-    /// full, or if more than `pictures` are too many.
+    /// normals, if the mesh has any; a cache of positions alone (.pc2, .mdd) needs none. Throws Error if they
+    /// are another number or not later, if the disk is full, or if more than `pictures` are too many.
     virtual void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) = 0;
 
     /// After the last picture; there must be one. Throws Error.

@@ -12,8 +12,8 @@ namespace palpate {
 struct Volume {
     std::string name = "the volume";  // for messages: the file it came from
     ivec3 dims = ivec3(0);
-    vec3 spacing = vec3(1);  // m
-    vec3 origin = vec3(0);   // m, the centre of voxel (0, 0, 0); DICOM's axes: x left, y back, z up
+    vec3 spacing = vec3(1);     // m
+    vec3 origin = vec3(0);      // m, the centre of voxel (0, 0, 0); DICOM's axes: x left, y back, z up
     mat3 direction = mat3(1);   // the grid's axes in the world, one a column, orthonormal
     std::vector<float> values;  // x runs fastest
 

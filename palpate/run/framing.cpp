@@ -52,7 +52,7 @@ Points subjects(const Scene& scene, const Models& made) {
     for (const Model& model : made.models) add(shown(model));
     for (const Still& still : made.stills) add(still.surface.positions);
     for (std::size_t i = 0; i < made.moves.size(); ++i) {
-        const Moved& moved = made.moves[i];
+        const MovedNodes& moved = made.moves[i];
         const Points& rest = made.models[moved.body].body.positions;
         for (const Waypoint& waypoint : scene.moves[i].path)
             for (const int node : moved.nodes)

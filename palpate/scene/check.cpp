@@ -275,7 +275,7 @@ void check(Scene& scene, const SceneSource& source) {
     if (const auto* at = std::get_if<std::string>(&scene.camera.look_at); at && !names.contains(*at))
         source.fail(0, "camera.look_at names no body or surface: " + *at,
                     "name one of them, or give a point");
-    if (!(glm::length(scene.camera.up) > 0))
+    if (const auto& up = scene.camera.up; up && !(glm::length(*up) > 0))
         source.fail(0, "camera.up is zero", "give it a direction, such as [0, 1, 0]");
     if (!(glm::length(scene.light.direction) > 0))
         source.fail(0, "light.direction is zero", "give it a direction, such as [0, -1, 0]");

@@ -539,7 +539,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     scene.name = std::filesystem::path(name).stem().string();
     scene.file = name;
     scene.folder = folder;
-    Reading reading{source};
+    SceneReading reading{source};
     Reader reader(root, reading, "");
     read_fields(reader, scene);
     scene.notes = std::move(reading.notes);

@@ -80,7 +80,7 @@ inline NumberRange between(double least, double most, std::string_view unit = ""
 }
 
 /// What all tables of a scene share while they are read.
-struct Reading {
+struct SceneReading {
     const SceneSource& source;
     std::vector<std::string> notes = {};  // what looks wrong
     std::map<std::string, std::set<std::string>> keys =
@@ -101,7 +101,7 @@ inline std::string in_words(const toml::node& node) {
 class Reader {
  public:
     /// `path`: of the table in its scene, as a change names it: "body.cube.pin"; empty for all of the scene.
-    Reader(const toml::table& table, Reading& reading, std::string path)
+    Reader(const toml::table& table, SceneReading& reading, std::string path)
         : table_(table), reading_(reading), path_(std::move(path)) {}
 
     template <class T>
@@ -374,7 +374,7 @@ class Reader {
     }
 
     const toml::table& table_;
-    Reading& reading_;
+    SceneReading& reading_;
     std::string path_;
     std::set<std::string> known_;
 };

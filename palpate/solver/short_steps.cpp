@@ -55,6 +55,7 @@ Body without_stiff_springs(Body body) {
     for (Tie& tie : springs.ties)
         if (tie.share * tie.stiffness > most) tie.share = most / tie.stiffness;
     body.springs = std::move(springs);
+    body.cells.clear();  // they belong to a grid
     return body;
 }
 

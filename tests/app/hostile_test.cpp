@@ -1,5 +1,6 @@
-// Files as they should not be, given to `palpate import`: each ends in one clear line, or in a sound solid. What
-// hangs is ended after a minute of the processor's time, a hundred times as long as any of them takes. Formats have tests of their own; here the whole way from file to solid is walked.
+// Files as they should not be, given to `palpate import`: each ends in one clear line, or in a sound solid.
+// What hangs is ended after a minute of the processor's time, a hundred times as long as any of them takes.
+// Formats have tests of their own; here the whole way from file to solid is walked.
 #include "palpate/base/files.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/repair.h"

@@ -180,7 +180,9 @@ TEST(Build, ASheetIsItsOwnSurfaceAndMayBeOpen) {
     write_mesh(square, scratch / "square.ply");
     const std::string text = "[[body]]\nsurface = \"square.ply\"\nsheet = true\ndensity = 0.5\n";
     const Models made = make(text, scratch / ".");
-    EXPECT_TRUE(made.notes.empty()) << made.notes[0];
+    ASSERT_EQ(made.notes.size(), 1u);
+    EXPECT_EQ(made.notes[0], "body body1: smaller parts dropped: 1 (33 % of the area)");
+    EXPECT_FALSE(made.models[0].steps.empty());
     const Model& sheet = made.models[0];
     EXPECT_EQ(sheet.body.count(), 4u);  // the largest part
     EXPECT_EQ(sheet.body.faces.size(), 2u);

@@ -42,7 +42,8 @@ class EveryWay : public Gpu, public ::testing::WithParamInterface<Both> {
         const std::size_t ways = every_integrator().size();
         std::vector<T> mine;
         for (std::size_t i = 0; i < cases.size(); ++i)
-            if ((i + turn + std::size_t(backend())) % ways == std::size_t(integrator())) mine.push_back(cases[i]);
+            if ((i + turn + std::size_t(backend())) % ways == std::size_t(integrator()))
+                mine.push_back(cases[i]);
         return mine;
     }
 };

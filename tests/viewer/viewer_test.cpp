@@ -277,21 +277,17 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
     viewer.options.paused = true;
     viewer.options.tip = 0.004f;
     viewer.options.mode = Mode::dent;
-    const double start = now();
-    auto until = [&](auto holds) {
-        while (!holds() && now() - start < 60) viewer.advance(1);
-        return holds();
-    };
+    auto until = [&](auto holds) { wait_until(viewer, 1, holds); };
+    auto ticks = [&] { return viewer.feeling() ? viewer.feeling()->timing().periods.count() : 0; };
     auto lasting = [&] { return viewer.feeling()->felt().lasting; };
     // From below the body to above it and back: through it, if the hand went straight.
     for (int i = 0; i < 20; ++i) {
         viewer.move_pointer(middle() + vec2(0, i % 2 ? 90 : -90));
         viewer.advance(1);
-        const double from = now();
-        while (now() - from < 0.03) viewer.advance(1);
+        until([&, before = ticks()] { return ticks() > before + 30; });
     }
     viewer.move_pointer(middle());
-    ASSERT_TRUE(until([&] { return viewer.feeling() && viewer.feeling()->felt().time > 0; }));
+    until([&] { return viewer.feeling() && viewer.feeling()->felt().time > 0; });
     EXPECT_EQ(lasting(), 0);
     EXPECT_FALSE(viewer.can_undo());
     const Image untouched = viewer.image();
@@ -302,9 +298,9 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
         viewer.move_pointer(place);
         viewer.advance(1);
         viewer.press(Button::left);
-        EXPECT_TRUE(until([&] { return lasting() > before; }));
+        until([&] { return lasting() > before; });
         viewer.release(Button::left);
-        EXPECT_TRUE(until([&] { return viewer.feeling()->felt().count == lasting(); }));
+        until([&] { return viewer.feeling()->felt().count == lasting(); });
     }
     const Image twice = viewer.image();
     EXPECT_GT(difference(twice, untouched), 0.01);
@@ -316,11 +312,11 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
     viewer.advance(1);
     const int both = lasting();
     viewer.undo();
-    EXPECT_TRUE(until([&] { return lasting() < both; }));
+    until([&] { return lasting() < both; });
     EXPECT_GT(lasting(), 0);
     EXPECT_TRUE(viewer.can_undo());
     viewer.restart();
-    EXPECT_TRUE(until([&] { return lasting() == 0; }));
+    until([&] { return lasting() == 0; });
     EXPECT_FALSE(viewer.can_undo());
     viewer.options.paused = true;
     EXPECT_TRUE(difference(viewer.image(), untouched) < 0.02);
@@ -353,11 +349,10 @@ TEST_F(ViewerTest, APictureShowsOneTick) {
     viewer.move_pointer(middle());
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling());
-    const double start = now();
-    while (viewer.feeling()->felt().time == 0 && now() - start < 20) viewer.advance(1);
+    wait_until(viewer, 1, [&] { return viewer.feeling()->felt().time > 0; });
     const double time = viewer.feeling()->felt().time;
     const auto ticks = viewer.feeling()->timing().periods.count();
-    while (viewer.feeling()->timing().periods.count() < ticks + 5 && now() - start < 40) viewer.image();
+    while (viewer.feeling()->timing().periods.count() < ticks + 5) viewer.image();
     EXPECT_EQ(viewer.feeling()->felt().time, time);
     viewer.advance(1);
     EXPECT_GT(viewer.feeling()->felt().time, time);

@@ -416,18 +416,18 @@ void scan(const std::vector<std::filesystem::path>& files, std::vector<Slice>& a
 }
 
 // A file's pixels, all its pictures.
-struct Picture {
+struct Pixels {
     std::filesystem::path file;
     std::vector<char> bytes;
     gdcm::PixelFormat format;
 };
 
-Picture read_picture(const std::filesystem::path& file) {
+Pixels read_picture(const std::filesystem::path& file) {
     gdcm::ImageReader reader;
     reader.SetFileName(file.c_str());
     if (!reader.Read()) refuse_packing(reader.GetFile(), file);
     const gdcm::Image& image = reader.GetImage();
-    Picture picture{
+    Pixels picture{
         .file = file, .bytes = std::vector<char>(image.GetBufferLength()), .format = image.GetPixelFormat()};
     if (!image.GetBuffer(picture.bytes.data())) refuse_packing(reader.GetFile(), file);
     // GDCM swaps the bytes of each half of a number of 32 bits, but not the halves.
@@ -441,7 +441,7 @@ Picture read_picture(const std::filesystem::path& file) {
 
 // As many bits as are in use, with their sign.
 template <class T>
-void write_values(const Picture& picture, const Slice& slice, std::FILE* out) {
+void write_values(const Pixels& picture, const Slice& slice, std::FILE* out) {
     const std::size_t count = std::size_t(slice.size.x) * std::size_t(slice.size.y);
     if (picture.bytes.size() < (std::size_t(slice.frame) + 1) * count * sizeof(T))
         refuse("a truncated or damaged DICOM file", slice.file, "get it again, or move it away");
@@ -460,7 +460,7 @@ void write_values(const Picture& picture, const Slice& slice, std::FILE* out) {
     if (std::fwrite(values.data(), sizeof(float), count, out) != count) throw std::bad_alloc();
 }
 
-void write_values(const Picture& picture, const Slice& slice, std::FILE* out) {
+void write_values(const Pixels& picture, const Slice& slice, std::FILE* out) {
     switch (picture.format.GetScalarType()) {
         case gdcm::PixelFormat::UINT8:
             return write_values<std::uint8_t>(picture, slice, out);
@@ -482,7 +482,7 @@ void write_values(const Picture& picture, const Slice& slice, std::FILE* out) {
 }
 
 void write_all(std::span<const Slice> slices, std::FILE* out) {
-    Picture picture;
+    Pixels picture;
     for (const Slice& slice : slices) {
         if (picture.file != slice.file) picture = read_picture(slice.file);
         write_values(picture, slice, out);

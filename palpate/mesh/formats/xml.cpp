@@ -13,7 +13,7 @@ namespace {
 std::string_view without_prefix(std::string_view name) { return name.substr(name.find(':') + 1); }
 
 // What the parser calls back. Nothing may be thrown through a library in C, so it is kept.
-struct Reading {
+struct XmlReading {
     XML_Parser parser;
     const std::function<bool(const XmlElement&)>& begins;
     const std::function<void(std::string_view)>& ends;
@@ -33,7 +33,7 @@ struct Reading {
 };
 
 void begin(void* reading, const char* name, const char** attributes) {
-    auto& r = *static_cast<Reading*>(reading);
+    auto& r = *static_cast<XmlReading*>(reading);
     r.call([&] {
         r.left_off =
             r.left_off || !r.begins({without_prefix(name), attributes, XML_GetCurrentLineNumber(r.parser)});
@@ -42,13 +42,13 @@ void begin(void* reading, const char* name, const char** attributes) {
 }
 
 void end(void* reading, const char* name) {
-    auto& r = *static_cast<Reading*>(reading);
+    auto& r = *static_cast<XmlReading*>(reading);
     if (!r.left_off) r.call([&] { r.ends(without_prefix(name)); });
 }
 
 void refuse_entity(void* reading, const char*, int, const char*, int, const char*, const char*, const char*,
                    const char*) {
-    auto& r = *static_cast<Reading*>(reading);
+    auto& r = *static_cast<XmlReading*>(reading);
     r.entities = true;
     XML_StopParser(r.parser, XML_FALSE);
 }
@@ -66,7 +66,7 @@ void read_xml(const Source& source, const std::function<bool(const XmlElement&)>
     const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
                                                                               &XML_ParserFree);
     if (!parser) throw std::bad_alloc();
-    Reading reading{parser.get(), begins, ends};
+    XmlReading reading{parser.get(), begins, ends};
     XML_SetUserData(parser.get(), &reading);
     XML_SetElementHandler(parser.get(), begin, end);
     XML_SetEntityDeclHandler(parser.get(), refuse_entity);
