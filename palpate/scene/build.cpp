@@ -450,8 +450,11 @@ void find_files(const Scene& scene) {
 
 constexpr double most_field_points = 3e7;
 
-Mesh read_shape(const ColliderRecipe& recipe, const std::filesystem::path& folder) {
-    Mesh mesh = read_mesh(find_data(recipe.surface, folder), recipe.units);
+Mesh read_shape(const ColliderRecipe& recipe, const std::filesystem::path& folder, const std::string& where,
+                std::vector<std::string>& notes) {
+    std::vector<std::string> of_file;
+    Mesh mesh = read_mesh(find_data(recipe.surface, folder), recipe.units, &of_file);
+    for (const std::string& note : of_file) notes.push_back(fmt::format("{}: {}", where, note));
     weld(mesh);
     drop_collapsed(mesh);
     rotate(mesh, recipe.rotate);
@@ -514,7 +517,7 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
     Collider collider = recipe.collider;
     std::optional<vec3> about = recipe.about;
     if (!recipe.surface.empty()) {
-        const Mesh mesh = read_shape(recipe, scene.folder);
+        const Mesh mesh = read_shape(recipe, scene.folder, where, result.notes);
         if (!about) about = bounds(mesh).centre();
         if (const auto* polygon = std::get_if<Polygon>(&collider.shape)) {
             collider.shape = polygon_of(mesh, polygon->thickness);

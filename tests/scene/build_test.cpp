@@ -357,6 +357,13 @@ TEST(Build, CollidersThatMoveAreGivenAboutTheirPivot) {
     EXPECT_EQ(made.pivots[3], vec3(0, 2, 0));
 }
 
+TEST(Build, WhatAColliderLeavesOutOfItsFileIsSaid) {
+    const Scratch scratch;
+    write_text(scratch / "plate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
+    EXPECT_TRUE(has_note(make(cube + "[[collider]]\npolygon = { surface = \"plate.obj\" }\n", scratch / "."),
+                         "collider 1: left out 1"));
+}
+
 TEST(Build, CollidersFromFiles) {
     Scratch scratch;
     write_mesh(ellipsoid(vec3(50), 20), scratch / "ball.ply");  // millimetres
