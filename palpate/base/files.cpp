@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <thread>
 
 namespace palpate {
 namespace {
@@ -26,15 +27,18 @@ struct Close {
 // The names of unfinished files, as a handler of signals may read them: at places that do not move. One that
 // finds no place is only removed less surely.
 std::array<std::atomic<const char*>, 64> unfinished{};
+std::atomic<int> removing = 0;  // handlers that may read one of them just now
 
 void note(const char* name) {
     for (auto& place : unfinished)
         if (const char* nothing = nullptr; place.compare_exchange_strong(nothing, name)) return;
 }
 
+// When this returns, nobody reads the name any more.
 void forget(const char* name) {
     for (auto& place : unfinished)
-        if (const char* noted = name; place.compare_exchange_strong(noted, nullptr)) return;
+        if (const char* noted = name; place.compare_exchange_strong(noted, nullptr)) break;
+    while (removing > 0) std::this_thread::yield();
 }
 
 }  // namespace
@@ -57,8 +61,10 @@ void Unfinished::finish() {
 }
 
 void remove_unfinished() noexcept {
+    ++removing;
     for (auto& place : unfinished)
         if (const char* name = place.exchange(nullptr)) unlink(name);
+    --removing;
 }
 
 std::string read_text(const std::filesystem::path& path) {

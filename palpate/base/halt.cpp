@@ -6,12 +6,14 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <mutex>
+#include <span>
 
 namespace palpate {
 namespace {
@@ -20,6 +22,7 @@ namespace {
 constexpr int ending[] = {SIGINT, SIGTERM, SIGHUP,  SIGQUIT, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,    SIGILL,
                           SIGSYS, SIGPIPE, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ, SIGVTALRM, SIGPROF};
 constexpr int pausing[] = {SIGTSTP, SIGTTIN, SIGTTOU};
+constexpr int crashing[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS};
 constexpr std::size_t alternate_stack = 1 << 16;  // bytes, for the handler where the stack itself overflowed
 
 // A handler of signals finds its data only at places that do not move.
@@ -76,10 +79,13 @@ void pass_on(int signal, siginfo_t* about, void* context) {
         it.sa_handler(signal);
 }
 
+bool is_one_of(std::span<const int> signals, int signal) {
+    return std::ranges::find(signals, signal) != signals.end();
+}
+
 void halt(int signal, siginfo_t* about, void* context) {
     const int error = errno;
-    const bool pauses = signal == SIGTSTP || signal == SIGTTIN || signal == SIGTTOU;
-    call_acts(pauses ? Halt::paused : Halt::ended);
+    call_acts(is_one_of(pausing, signal) ? Halt::paused : Halt::ended);
     pass_on(signal, about, context);
     errno = error;
 }
@@ -94,6 +100,10 @@ void listen(int signal) {
     ours.sa_sigaction = halt;
     ours.sa_flags = (earlier.sa_flags & ~int(SA_RESETHAND)) | SA_SIGINFO | SA_ONSTACK;
     if (is_usual) ours.sa_flags |= SA_RESTART;
+    // A second one waits until the first has let go of everything; only a crash cannot.
+    for (int other : ending)
+        if (!is_one_of(crashing, other)) sigaddset(&ours.sa_mask, other);
+    for (int other : pausing) sigaddset(&ours.sa_mask, other);
     sigaction(signal, &ours, nullptr);
 }
 

@@ -1,9 +1,9 @@
 #include "palpate/mesh/isosurface.h"
 
 #include "palpate/base/error.h"
-#include "palpate/mesh/float_grid.h"
 
 #include <fmt/format.h>
+#include <openvdb/openvdb.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>

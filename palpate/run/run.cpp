@@ -62,8 +62,9 @@ void look_for_older(const std::filesystem::path& folder, const std::string& begi
     std::size_t count = 0;
     std::string one;
     std::error_code error;
-    for (const auto& file : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
-        const std::string name = file.path().filename().string();
+    std::filesystem::directory_iterator file(folder.empty() ? "." : folder, error);
+    for (; !error && file != std::filesystem::directory_iterator(); file.increment(error)) {
+        const std::string name = file->path().filename().string();
         if (!name.starts_with(begin) || !name.ends_with(end) || name.size() <= begin.size() + end.size())
             continue;
         const std::string number = name.substr(begin.size(), name.size() - begin.size() - end.size());

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr int longest_tick = 20;  // ms, that a tick under way is waited for
+constexpr int longest_tick = 20;  // ms, that ticks under way are waited for, all together
 
 // A handler of signals finds them only at places that do not move.
 std::array<std::atomic<Touch*>, 256> hands{};
@@ -30,9 +30,10 @@ void for_each_hand(const Act& act) {
 void let_go_of_all() noexcept {
     ++visitors;
     for_each_hand([](Touch& hand) { hand.let_go(); });
-    // A tick that was under way may have written after that what it had reckoned before.
-    for_each_hand([](Touch& hand) {
-        for (int ms = 0; ms < longest_tick && hand.is_ticking(); ++ms) poll(nullptr, 0, 1);
+    // A tick that was under way may have written after that what it had computed before.
+    int ms = 0;
+    for_each_hand([&](Touch& hand) {
+        for (; ms < longest_tick && hand.is_ticking(); ++ms) poll(nullptr, 0, 1);
         hand.let_go();
     });
     --visitors;

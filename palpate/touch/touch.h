@@ -110,7 +110,6 @@ class Touch {
     void take_wishes();
     void take_in(const Hand& hand);
     void bound_stiffness();
-    bool write(dvec3 force);
     dvec3 wanted(double now, double* proxy_seconds);
     void carry_marks(double now);
     dvec3 turned_slowly(dvec3 wanted, double seconds);

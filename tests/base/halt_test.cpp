@@ -100,6 +100,19 @@ TEST_F(OnHalt, IsCalledOnceHoweverTheProcessEnds) {
     }
 }
 
+// A second signal on the same thread, as when a terminal closes while a service is told to end.
+TEST_F(OnHalt, ASecondSignalWaitsForWhatTheFirstBegan) {
+    const int status = status_of([] {
+        on_halt([](Halt) noexcept {
+            raise(SIGHUP);
+            ++notes->ended;
+        });
+        raise(SIGTERM);
+    });
+    EXPECT_EQ(notes->ended, 1);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+}
+
 TEST_F(OnHalt, HandlersOfTheApplicationAreCalledAsBefore) {
     const int status = status_of([] {
         struct sigaction own {};

@@ -74,7 +74,7 @@ TEST(House, TheWholeLibraryIsInItsOneHeader) {
         "body/grid.h",         "mesh/corners.h",         "mesh/ending.h",          "mesh/bytes.h",
         "mesh/gltf.h",         "mesh/parts.h",           "scene/check.h",          "scene/toml_reader.h",
         "solver/pass.h",       "solver/check.h",         "scene/thin_walls.h",     "solver/short_steps.h",
-        "mesh/pieces.h",       "mesh/face_pairs.h",      "mesh/float_grid.h"};
+        "mesh/pieces.h",       "mesh/face_pairs.h"};
     for (const auto& entry : std::filesystem::recursive_directory_iterator(house)) {
         const std::string below = std::filesystem::relative(entry.path(), house).string();
         const bool part_of_drawing =

@@ -19,7 +19,9 @@ void check(const Scale& scale, const std::string& device) {
 }  // namespace
 
 Scaled::Scaled(std::unique_ptr<Device> inner, const Scale& scale)
-    : Decorator(std::move(inner)), first_(scale), setting_{scale}, shared_(setting_), used_(setting_) {}
+    : Decorator(std::move(inner)), first_(scale), setting_{scale}, shared_(setting_), used_(setting_) {
+    check(first_, Decorator::spec().name);
+}
 
 void Scaled::set(const Scale& scale) {
     check(scale, Decorator::spec().name);
@@ -37,9 +39,7 @@ DeviceSpec Scaled::spec() const {
 }
 
 void Scaled::open() {
-    const DeviceSpec spec = Decorator::spec();
-    check(first_, spec.name);
-    peak_force_ = spec.peak_force;
+    peak_force_ = Decorator::spec().peak_force;
     Decorator::open();
 }
 
