@@ -28,7 +28,8 @@ std::string quoted(const std::filesystem::path& file) {
     return text + '"';
 }
 
-// Whatever size it had, it is two decimetres long then: so that step and hand suit it.
+// Whatever size it had, it is two decimetres long then, so that step and hand suit it; and stiff enough to
+// bear its own weight without folding (50 kPa: softer than a rubber, stiffer than a liver).
 SceneText scene_around(const char* kind, const std::filesystem::path& file) {
     return {fmt::format(R"([[body]]
 name = "it"
@@ -36,7 +37,7 @@ name = "it"
 size = 0.2
 centre = true
 nodes = 5000
-youngs_modulus = 5000
+youngs_modulus = 50000
 density = 1000
 damping = 2
 pin = {{ below = 0.1 }}
