@@ -24,6 +24,9 @@ namespace {
 // How the copy ends; any other status is a crash.
 constexpr int done = 0, failed = 43, out_of_memory = 44;
 
+// Bytes that a complaint may have, however little output is allowed.
+constexpr std::size_t complaint = 1 << 16;
+
 [[noreturn]] void cannot(const std::string& what, const std::string& file) {
     throw Error("cannot " + what + " (" + std::strerror(errno) + ")", file, "free some memory and try again");
 }
@@ -66,11 +69,12 @@ void keep_quiet() {
 // The copy's whole life.
 [[noreturn]] void live(int output, const Allowance& allowance, const std::function<void(std::FILE*)>& work) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL})
+    for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXFSZ})
         std::signal(signal, SIG_DFL);
     keep_quiet();
     limit(RLIMIT_CORE, 0);
     limit_memory(allowance.bytes);
+    limit(RLIMIT_FSIZE, allowance.output + complaint);
     std::FILE* stream = fdopen(output, "wb");
     int status = failed;
     try {
@@ -157,6 +161,9 @@ Written isolated(const std::string& library, const std::string& file, const Allo
     const int how = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     if (how == out_of_memory)
         throw Error(fmt::format("{} wants more than {} MB for what is", library, allowance.bytes >> 20), file,
+                    remedy);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ)
+        throw Error(fmt::format("{} makes more than {} MB of what is", library, allowance.output >> 20), file,
                     remedy);
     if (how != done && how != failed) throw Error(library + " crashed on what is", file, remedy);
     Written written = mapped(output.number, file);

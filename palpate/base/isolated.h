@@ -11,7 +11,9 @@ namespace palpate {
 struct Allowance {
     double seconds = 20;                       // of the processor's time, however busy the machine is
     std::size_t bytes = std::size_t(1) << 30;  // of memory, beyond what this process has already
-    double idle = 30;  // s in a row in which it gets nothing done: it waits for what never comes
+    std::size_t output = std::size_t(1)
+                         << 30;  // bytes that it writes to its stream, which also lie in memory
+    double idle = 30;            // s in a row in which it gets nothing done: it waits for what never comes
 };
 
 /// What isolated work wrote; unmapped again with the last of it.

@@ -25,6 +25,7 @@ namespace palpate {
 namespace {
 
 constexpr double most_pixels = 1 << 26;
+constexpr std::size_t most_written = 4 * std::size_t(most_pixels) + 2 * sizeof(int);
 constexpr double most_pixels_a_byte = 8 * 1032;  // of one bit each, packed as well as a PNG can
 
 std::uint8_t byte(std::string_view bytes, std::size_t at) { return std::uint8_t(bytes[at]); }
@@ -78,7 +79,8 @@ Image parse_image(std::string_view bytes, const std::string& name) {
     if (bytes.size() > std::size_t(std::numeric_limits<int>::max()))
         throw Error("a picture of more than 2 GB", name, "make it smaller");
 
-    const Written written = isolated("stb", name, {.seconds = 15}, [&](std::FILE* to) {
+    const Allowance allowance{.seconds = 15, .output = most_written};
+    const Written written = isolated("stb", name, allowance, [&](std::FILE* to) {
         const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
         const int length = int(bytes.size());
         int size[2] = {};

@@ -1,6 +1,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/mesh/ending.h"
+#include "palpate/mesh/formats/budget.h"
 #include "palpate/mesh/formats/formats.h"
 #include "palpate/mesh/read.h"
 
@@ -99,7 +100,7 @@ std::string read_unzipped(const std::filesystem::path& path) {
         void operator()(gzFile file) const { gzclose(file); }
     };
     std::error_code none;
-    const std::size_t most = (std::size_t(256) << 20) + 64 * std::filesystem::file_size(path, none);
+    const std::size_t most = warranted(std::filesystem::file_size(path, none));
     const std::unique_ptr<gzFile_s, Close> file(none ? nullptr : gzopen(path.c_str(), "rb"));
     std::string text;
     for (std::vector<char> block(1 << 20);;) {

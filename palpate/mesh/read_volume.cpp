@@ -1,5 +1,6 @@
 #include "palpate/base/error.h"
 #include "palpate/mesh/ending.h"
+#include "palpate/mesh/formats/units.h"
 #include "palpate/mesh/formats/volumes.h"
 #include "palpate/mesh/read.h"
 
@@ -82,37 +83,7 @@ Grid checked_grid(ivec3 dims, const dmat3& steps, dvec3 origin, const std::files
 }
 
 double named_unit(const std::string& name, std::vector<std::string>& notes) {
-    constexpr std::pair<const char*, double> all[] = {{"m", 1},
-                                                      {"meter", 1},
-                                                      {"meters", 1},
-                                                      {"metre", 1},
-                                                      {"metres", 1},
-                                                      {"cm", 1e-2},
-                                                      {"centimeter", 1e-2},
-                                                      {"centimeters", 1e-2},
-                                                      {"mm", 1e-3},
-                                                      {"millimeter", 1e-3},
-                                                      {"millimeters", 1e-3},
-                                                      {"millimetre", 1e-3},
-                                                      {"millimetres", 1e-3},
-                                                      {"um", 1e-6},
-                                                      {"\xc2\xb5m", 1e-6},
-                                                      {"\xce\xbcm", 1e-6},
-                                                      {"\xb5m", 1e-6},
-                                                      {"micron", 1e-6},
-                                                      {"microns", 1e-6},
-                                                      {"micrometer", 1e-6},
-                                                      {"micrometers", 1e-6},
-                                                      {"micrometre", 1e-6},
-                                                      {"micrometres", 1e-6},
-                                                      {"nm", 1e-9},
-                                                      {"nanometer", 1e-9},
-                                                      {"nanometers", 1e-9},
-                                                      {"in", 0.0254},
-                                                      {"inch", 0.0254},
-                                                      {"inches", 0.0254}};
-    for (const auto& [one, metres] : all)
-        if (name == one) return metres;
+    if (const auto metres = metres_of(name)) return *metres;
     if (!name.empty() && name != "?" && name != "???" && name != "none" && name != "unknown")
         notes.push_back("its unit of length, \"" + name + "\", is not known: millimetres are assumed");
     return 0;

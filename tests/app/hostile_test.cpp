@@ -8,6 +8,7 @@
 #include "tests/app/command.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
+#include "tests/threemf.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -54,7 +55,12 @@ std::string x3d(const Mesh& mesh) {
         faces(mesh), points(mesh));
 }
 
-const char* const endings[] = {".ply", ".obj", ".stl", ".off", ".wrl", ".glb", ".gltf", ".x3d"};
+std::string threemf(const Mesh& mesh) {
+    const std::string object = "<object id='1'>" + mesh_of_3mf(mesh) + "</object>";
+    return zipped({{"3D/3dmodel.model", model(object, "<item objectid='1'/>", "unit='meter'")}});
+}
+
+const char* const endings[] = {".ply", ".obj", ".stl", ".off", ".wrl", ".glb", ".gltf", ".x3d", ".3mf"};
 
 enum class End { solid, error };
 
@@ -67,6 +73,7 @@ class Hostile : public ::testing::Test {
         if (ending == ".off") return off(mesh);
         if (ending == ".wrl") return wrl(mesh);
         if (ending == ".x3d") return x3d(mesh);
+        if (ending == ".3mf") return threemf(mesh);
         const auto path = scratch / ("good" + ending);
         write_mesh(mesh, path);
         const std::string bytes = read_text(path);

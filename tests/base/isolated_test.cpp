@@ -55,6 +55,14 @@ TEST(Isolated, ACrashAHangAndGreedEndOnlyTheCopy) {
                       for (;;) pause();
                   }),
         "the library has stood still for 0.1 s over what is in a file; convert it with another program");
+    EXPECT_EQ(complaint({.output = 1 << 20},
+                        [](std::FILE* out) {
+                            for (int i = 0; i < 3 << 20; ++i) std::fputc('x', out);
+                        }),
+              "the library makes more than 1 MB of what is in a file; convert it with another program");
+    EXPECT_EQ(
+        complaint({.output = 0}, [](std::FILE*) { throw Error("no faces", "x.ply", "export it again"); }),
+        "no faces in x.ply; export it again");
 #ifndef __SANITIZE_ADDRESS__
     EXPECT_EQ(complaint({.bytes = 64 << 20},
                         [](std::FILE* out) {

@@ -370,6 +370,9 @@ TEST(Gltf, PackedByMeshoptimizer) {
     Json& extension = file.json["bufferViews"].back()["extensions"]["EXT_meshopt_compression"];
     extension["filter"] = "EXPONENTIAL";
     expect_box(file.read(), vec3(0), vec3(2, 3, 5), 30);
+    extension["byteStride"] = 10;
+    EXPECT_HAS(file.refused(), "a stride of 10 in meshopt's compression, which is no multiple of 4");
+    extension["byteStride"] = 12;
     extension["count"] = 1'000'000'000'000;
     EXPECT_HAS(file.refused(), "more than the file's size warrants");
     extension["count"] = 100;
@@ -378,25 +381,32 @@ TEST(Gltf, PackedByMeshoptimizer) {
     EXPECT_HAS(file.refused(), "\"OTHER\"");
 }
 
-TEST(Gltf, PackedByDraco) {
+Making packed_by_draco(const Mesh& mesh) {
     draco::TriangleSoupMeshBuilder builder;
-    builder.Start(12);
+    builder.Start(int(mesh.triangles.size()));
     const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-    for (unsigned f = 0; f < 12; ++f) {
-        const uvec3 t = brick.triangles[f];
-        builder.SetAttributeValuesForFace(id, draco::FaceIndex(f), &brick.positions[t.x],
-                                          &brick.positions[t.y], &brick.positions[t.z]);
+    for (unsigned f = 0; f < mesh.triangles.size(); ++f) {
+        const uvec3 t = mesh.triangles[f];
+        builder.SetAttributeValuesForFace(id, draco::FaceIndex(f), &mesh.positions[t.x], &mesh.positions[t.y],
+                                          &mesh.positions[t.z]);
     }
     draco::EncoderBuffer packed;
-    ASSERT_TRUE(draco::Encoder().EncodeMeshToBuffer(*builder.Finalize(), &packed).ok());
+    EXPECT_TRUE(draco::Encoder().EncodeMeshToBuffer(*builder.Finalize(), &packed).ok());
     Making file;
     const int view = file.view({packed.data(), packed.size()});
-    file.json["accessors"] = {{{"componentType", float32}, {"count", 8}, {"type", "VEC3"}},
-                              {{"componentType", uint32}, {"count", 36}, {"type", "SCALAR"}}};
+    file.json["accessors"] = {
+        {{"componentType", float32}, {"count", mesh.positions.size()}, {"type", "VEC3"}},
+        {{"componentType", uint32}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}}};
     file.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
     file.primitive() = {{"attributes", {{"POSITION", 0}}}, {"indices", 1}};
+    file.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view},
+                                                                    {"attributes", {{"POSITION", 0}}}};
+    return file;
+}
+
+TEST(Gltf, PackedByDraco) {
+    Making file = packed_by_draco(brick);
     Json& extension = file.primitive()["extensions"]["KHR_draco_mesh_compression"];
-    extension = {{"bufferView", view}, {"attributes", {{"POSITION", 0}}}};
     file.node()["translation"] = {1, 0, 0};
     expect_box(file.read(), vec3(1, 0, 0), vec3(3, 3, 5), 30);
     extension["attributes"]["POSITION"] = 7;
@@ -405,7 +415,7 @@ TEST(Gltf, PackedByDraco) {
     file.json["accessors"][0]["count"] = 9;
     EXPECT_HAS(file.refused(), "another number of vertices");
     file.bytes.resize(file.bytes.size() - 5);
-    file.json["bufferViews"][0]["byteLength"] = packed.size() - 5;
+    file.json["bufferViews"][0]["byteLength"] = file.bytes.size();
     EXPECT_HAS(file.refused(), "damaged Draco");
 }
 
@@ -532,6 +542,64 @@ TEST(Gltf, NothingIsMadeOfClaims) {
     file.node()["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
         file.vectors(std::vector<vec3>(1000));
     EXPECT_HAS(file.refused(), "more than the file's size warrants");
+}
+
+TEST(Gltf, WhatIsRepeatedIsCountedBeforeItIsMade) {
+    const std::string too_much = "more than the file's size warrants";
+    // What Draco unpacked, by morph targets.
+    Mesh net;
+    constexpr unsigned wide = 100;
+    for (unsigned y = 0; y < wide; ++y)
+        for (unsigned x = 0; x < wide; ++x) {
+            const auto i = unsigned(net.positions.size());
+            net.positions.push_back(vec3(x, y, 0));
+            if (x > 0 && y > 0) {
+                net.triangles.push_back({i - wide - 1, i - wide, i});
+                net.triangles.push_back({i - wide - 1, i, i - 1});
+            }
+        }
+    Making file = packed_by_draco(net);
+    EXPECT_EQ(file.read().positions.size(), net.positions.size());
+    for (int i = 0; i < 1500; ++i) {
+        file.primitive()["targets"].push_back({{"POSITION", 0}});
+        file.node()["weights"].push_back(1);
+    }
+    EXPECT_HAS(file.refused(), too_much);
+    // Empty primitives, by nodes.
+    constexpr int many = 2000;
+    file = Making();
+    file.json.erase("scenes");
+    for (int i = 0; i < many; ++i) {
+        file.json["nodes"].push_back({{"mesh", 0}});
+        file.json["meshes"][0]["primitives"].push_back(Json::object());
+    }
+    EXPECT_HAS(file.refused(), too_much);
+    // Joints of a skin without matrices.
+    file = Making();
+    file.json.erase("scenes");
+    file.json["meshes"][0]["primitives"].clear();
+    for (int i = 0; i < many; ++i) {
+        file.json["nodes"].push_back({{"mesh", 0}, {"skin", 0}});
+        file.json["skins"][0]["joints"].push_back(i);
+    }
+    EXPECT_HAS(file.refused(), too_much);
+}
+
+TEST(Gltf, AFileThatManyBuffersNameCountsOnce) {
+    Scratch scratch;
+    const std::size_t size = std::size_t(4) << 20;
+    put(scratch / "zeros.bin", std::string(size, '\0'));
+    Making file;
+    for (int i = 0; i < 140; ++i) {
+        file.json["buffers"].push_back({{"byteLength", size}, {"uri", "zeros.bin"}});
+        file.json["bufferViews"].push_back({{"buffer", i}, {"byteLength", 36}});
+        file.json["accessors"].push_back(
+            {{"bufferView", i}, {"componentType", float32}, {"count", 3}, {"type", "VEC3"}});
+        file.json["meshes"][0]["primitives"][i] = {{"attributes", {{"POSITION", i}}}};
+    }
+    put(scratch / "a.gltf", file.json.dump());
+    EXPECT_HAS(error_of(scratch / "a.gltf", [&] { read_mesh(scratch / "a.gltf"); }),
+               "more than the file's size warrants");
 }
 
 TEST(Gltf, NodesThatGoInCirclesAreRefused) {

@@ -352,6 +352,9 @@ TEST_F(ReadNoted, JoinsVoxelsFromSeveralFiles) {
     EXPECT_HAS(volume_error(scratch / "a.nhdr", header("data file: z%02d 1 5 1\n")),
                "cannot share 24 voxels");
     EXPECT_HAS(volume_error(scratch / "a.nhdr", header("data file: z%n%s 1 4 1\n")), "not understood");
+    for (const char* range : {"1e300 1e300 1", "-1e300 -1e300 1", "0.5 3.5 1", "1 4 0.5", "1 4 0", "1 inf 1"})
+        EXPECT_HAS(volume_error(scratch / "a.nhdr", header(fmt::format("data file: z%02d {}\n", range))),
+                   "not understood");
     put(scratch / "a.nhdr", header("data file: z%02d 3 6 1\n"));
     EXPECT_HAS(error_of(scratch / "z05", [&] { read_volume(scratch / "a.nhdr"); }), "cannot open");
     const std::string meta = "ElementType = MET_UCHAR\nElementSpacing = 1 1 1\nHeaderSize = 1";

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -443,6 +445,22 @@ TEST_F(ReadSeries, ReadsDataSetsWithoutTheMark) {
     EXPECT_TRUE(is_volume(file(0)));
     expect_slices(read(folder), {0, 1, 2, 3});
     expect_slices(read(file(1)), {0, 1, 2, 3});
+}
+
+// That this process has no more descriptors is no damage of the files.
+TEST_F(ReadSeries, SaysWhenNoProcessCanBeStarted) {
+    write(4);
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+    const int next = dup(STDERR_FILENO);
+    ASSERT_GE(next, 0);
+    close(next);
+    const rlimit two_more{rlim_t(next) + 2, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &two_more), 0);
+    const std::string said = error(folder);
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+    EXPECT_HAS(said, "cannot start a process (Too many open files)");
+    expect_slices(read(folder), {0, 1, 2, 3});
 }
 
 TEST_F(ReadSeries, SaysThatAGantryIsTiltedAndHowFar) {

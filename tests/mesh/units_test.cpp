@@ -4,13 +4,10 @@
 #include "tests/mesh/collada.h"
 #include "tests/mesh/reading.h"
 #include "tests/mesh/shapes.h"
-#include "tests/scratch.h"
+#include "tests/threemf.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <zip.h>
-
-#include <map>
 
 namespace palpate {
 namespace {
@@ -28,37 +25,7 @@ void expect_brick_of(const Mesh& mesh, double metre) {
 
 // ---- 3MF ----
 
-std::string zipped(const std::map<std::string, std::string>& files) {
-    Scratch scratch;
-    const std::filesystem::path path = scratch / "a.zip";
-    zip_t* archive = zip_open(path.c_str(), ZIP_CREATE, nullptr);
-    for (const auto& [name, text] : files)
-        zip_file_add(archive, name.c_str(), zip_source_buffer(archive, text.data(), text.size(), 0),
-                     ZIP_FL_ENC_UTF_8);
-    EXPECT_EQ(zip_close(archive), 0);
-    return read_text(path);
-}
-
-std::string mesh_of_3mf(const Mesh& mesh = box(vec3(0), brick)) {
-    std::string text = "<mesh><vertices>";
-    for (vec3 p : mesh.positions) text += fmt::format("<vertex x='{}' y='{}' z='{}'/>", p.x, p.y, p.z);
-    text += "</vertices><triangles>";
-    for (uvec3 t : mesh.triangles) text += fmt::format("<triangle v1='{}' v2='{}' v3='{}'/>", t.x, t.y, t.z);
-    return text + "</triangles></mesh>";
-}
-
-std::string model(const std::string& resources, const std::string& build,
-                  const std::string& attributes = "") {
-    return fmt::format(
-        "<?xml version='1.0' encoding='UTF-8'?>\n<model {} "
-        "xmlns='http://schemas.microsoft.com/3dmanufacturing/core/"
-        "2015/02' xmlns:p='http://schemas.microsoft.com/3dmanufacturing/production/2015/06' "
-        "xmlns:b='http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02'><resources>{}</resources>"
-        "<build>{}</build></model>",
-        attributes, resources, build);
-}
-
-const std::string one = "<object id='1' type='model'>" + mesh_of_3mf() + "</object>",
+const std::string one = "<object id='1' type='model'>" + mesh_of_3mf(box(vec3(0), brick)) + "</object>",
                   built = "<item objectid='1'/>";
 
 std::string archive(const std::string& text) { return zipped({{"3D/3dmodel.model", text}}); }
@@ -119,7 +86,8 @@ TEST(ThreeMf, ObjectsInFilesOfTheirOwn) {
 
 TEST(ThreeMf, WhatIsLeftOutIsSaid) {
     std::vector<std::string> notes;
-    const std::string support = "<object id='2' type='support'>" + mesh_of_3mf() + "</object>";
+    const std::string support =
+        "<object id='2' type='support'>" + mesh_of_3mf(box(vec3(0), brick)) + "</object>";
     expect_brick_of(parse(model(one + support, built + "<item objectid='2'/>"), &notes), 1e-3);
     ASSERT_EQ(notes.size(), 1u);
     EXPECT_HAS(notes[0], "left out 1 objects that are supports");
@@ -154,6 +122,26 @@ TEST(ThreeMf, RefusesWhatIsDamaged) {
             i, i - 1);
     EXPECT_HAS(refused(model(bomb, item)), "more than the file's size warrants");
     EXPECT_HAS(parse_error("a.stl", whole), "a ZIP archive");
+}
+
+TEST(ThreeMf, WhatIsRepeatedIsCountedBeforeItIsMade) {
+    std::string components, items;
+    for (int i = 0; i < 600; ++i) {
+        components += "<component objectid='1'/>";
+        items += "<item objectid='2'/>";
+    }
+    const auto parts = [&](const std::string& of) {
+        return of + "<object id='2'><components>" + components + "</components></object>";
+    };
+    EXPECT_HAS(refused(model(parts("<object id='1' type='support'/>"), items)),
+               "more than the file's size warrants");
+    // Each component says in which file its object is: here, in one of a long name.
+    for (int i = 0; i < 3; ++i) components += components;
+    const std::string name(60'000, 'n'), root = "<object id='1'><components><component p:path='/" + name +
+                                                "' objectid='2'/></components></object>";
+    EXPECT_HAS(parse_error("a.3mf",
+                           zipped({{"3D/3dmodel.model", model(root, built)}, {name, model(parts(""), "")}})),
+               "more than the file's size warrants");
 }
 
 // ---- what assimp reads ----

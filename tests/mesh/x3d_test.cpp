@@ -255,6 +255,13 @@ TEST(X3d, CrossSectionsAlongASpine) {
 
 TEST(X3d, RefusesWhatIsDamaged) {
     EXPECT_HAS(parse_error("a.x3d", "<!DOCTYPE X3D [<!ENTITY a 'aaaa'>]>\n" + file("")), "entities");
+    const auto with_attributes = [](const std::string& value) {
+        return "<!DOCTYPE X3D [<!ATTLIST Box size CDATA " + value + ">]>\n<X3D><Scene>" + shape +
+               "</Scene></X3D>";
+    };
+    EXPECT_HAS(parse_error("a.x3d", with_attributes("'9 9 9'")), "XML with defaults of its own");
+    expect_box(parse(with_attributes("#IMPLIED")), vec3(0), vec3(2, 3, 5), 30);
+    expect_box(parse(file("<x:/>" + shape)), vec3(0), vec3(2, 3, 5), 30);  // no name behind the prefix
     EXPECT_HAS(parse_error("a.x3d", "<svg></svg>"), "XML that is no X3D");
     EXPECT_HAS(refused("<Shape>\n</Box>"), "mismatched tag) in line 5");
     EXPECT_HAS(refused("<Shape><IndexedFaceSet coordIndex='0 { 1'/></Shape>"),

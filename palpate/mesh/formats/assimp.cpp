@@ -4,9 +4,11 @@
 #include "palpate/base/error.h"
 #include "palpate/base/isolated.h"
 #include "palpate/mesh/ending.h"
+#include "palpate/mesh/formats/budget.h"
 #include "palpate/mesh/formats/formats.h"
 #include "palpate/mesh/formats/lists.h"
 #include "palpate/mesh/formats/place.h"
+#include "palpate/mesh/formats/units.h"
 #include "palpate/mesh/formats/xml.h"
 
 #include <assimp/DefaultIOSystem.h>
@@ -169,16 +171,14 @@ double dxf_unit(std::string_view text) {
 // The unit that the file states, in metres; 0 where it does not. Of the formats that can, Collada's is the
 // one that assimp heeds itself.
 double stated_unit(const Source& source, const std::string& format, const aiScene& scene) {
-    constexpr std::pair<std::string_view, double> amf_units[] = {
-        {"millimeter", 1e-3}, {"inch", 0.0254}, {"feet", 0.3048}, {"meter", 1.0}, {"micron", 1e-6}};
     float centimetres = 0;
     if (format == ".fbx" && scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", centimetres))
         return centimetres > 0 ? 0.01 * double(centimetres) : 0;
     if (format == ".amf") {
         const std::string name = in_xml(source, "amf", "unit").value_or("millimeter");
-        const auto unit = std::ranges::find(amf_units, name, &std::pair<std::string_view, double>::first);
-        if (unit == std::end(amf_units)) source.broken("the unknown unit " + in_quotes(name));
-        return unit->second;
+        const auto unit = metres_of(name);
+        if (!unit) source.broken("the unknown unit " + in_quotes(name));
+        return *unit;
     }
     if (format == ".dae") {
         const double meter = spelled(in_xml(source, "unit", "meter").value_or("1")).value_or(1);
@@ -222,7 +222,8 @@ bool assimp_knows(const std::string& ending) {
 }
 
 Draft read_with_assimp(const Source& source) {
-    const Allowance allowance{.seconds = 15, .bytes = (std::size_t(256) << 20) + 64 * source.whole().size()};
+    const std::size_t most = warranted(source.whole().size());
+    const Allowance allowance{.seconds = 15, .bytes = most, .output = most};
     const std::string unreadable = "something that assimp cannot read",
                       remedy = "convert it with another program";
     std::filesystem::path name = std::filesystem::path(source.name()).filename();

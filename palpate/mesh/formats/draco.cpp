@@ -42,12 +42,11 @@ std::vector<double> numbers_of(draco::Mesh& mesh, std::uint32_t id, const Source
 
 }  // namespace
 
-std::vector<DracoMesh> unpack_draco(const std::vector<DracoPacked>& packed, const Source& source) {
+std::vector<DracoMesh> unpack_draco(const std::vector<DracoPacked>& packed, const Source& source,
+                                    std::size_t most) {
     std::vector<DracoMesh> meshes;
     if (packed.empty()) return meshes;
-    std::size_t there = source.whole().size();
-    for (const DracoPacked& one : packed) there += one.bytes.size();
-    const Allowance allowance{.seconds = 15, .bytes = (std::size_t(256) << 20) + 64 * there};
+    const Allowance allowance{.seconds = 15, .bytes = most, .output = most};
     const Written written = isolated("Draco's decoder", source.name(), allowance, [&](std::FILE* to) {
         for (const DracoPacked& one : packed) {
             const std::unique_ptr<draco::Mesh> mesh = decoded(one, source);

@@ -19,7 +19,9 @@ struct DracoMesh {
         attributes;  // all numbers of each, in the order in which they were asked for
 };
 
-/// Unpacks them all, in one process of its own. Throws Error, for the file that is `source`.
-std::vector<DracoMesh> unpack_draco(const std::vector<DracoPacked>& packed, const Source& source);
+/// Unpacks them all, in one process of its own, to no more than `most` bytes in all. Throws Error, for the
+/// file that is `source`.
+std::vector<DracoMesh> unpack_draco(const std::vector<DracoPacked>& packed, const Source& source,
+                                    std::size_t most);
 
 }  // namespace palpate

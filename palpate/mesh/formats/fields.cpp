@@ -14,7 +14,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t longest_header = 1 << 20;
-constexpr double most_files = 1 << 16;
+constexpr double most_files = 1 << 16, largest_number = 1e9;
 
 std::string trimmed(const std::string& text) {
     const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
@@ -54,9 +54,10 @@ std::vector<std::string> of_pattern(const std::string& data, const std::filesyst
     double range[3] = {0, 0, 1};  // from, to, step
     for (double& number : range)
         if (const auto value = spelled(word(rest))) number = *value;
+    const auto is_number = [](double n) { return is_whole(n, -largest_number, largest_number); };
     std::vector<std::string> names;
     const double count = (range[1] - range[0]) / range[2] + 1;
-    if (count >= 1 && count <= most_files)
+    if (std::ranges::all_of(range, is_number) && count >= 1 && count <= most_files)
         for (int i = 0; i < int(count); ++i)
             if (const auto name = numbered(pattern, int(range[0] + i * range[2]))) names.push_back(*name);
     if (names.empty()) refuse("a pattern of files that is not understood, " + in_quotes(data) + ",", path);

@@ -33,7 +33,7 @@ const Tag pixels(0x7fe0, 0x0010);
 
 // ---- what a header says ----
 
-std::string trimmed(std::string text) {
+std::string unpadded(std::string text) {
     text.erase(std::find(text.begin(), text.end(), '\0'), text.end());
     const std::size_t first = text.find_first_not_of(' ');
     if (first == std::string::npos) return "";
@@ -43,7 +43,7 @@ std::string trimmed(std::string text) {
 std::string text(const DataSet& set, const Tag& tag) {
     if (!set.FindDataElement(tag)) return "";
     const gdcm::ByteValue* value = set.GetDataElement(tag).GetByteValue();
-    return value ? trimmed(std::string(value->GetPointer(), value->GetLength())) : "";
+    return value ? unpadded(std::string(value->GetPointer(), value->GetLength())) : "";
 }
 
 const DataSet* item(const DataSet& set, const Tag& tag, std::size_t number) {
@@ -198,6 +198,12 @@ Slice troubled(Slice slice, const std::string& trouble, const std::string& remed
     return slice;
 }
 
+Slice of_file(const std::filesystem::path& file) {
+    Slice slice;
+    slice.file = file;
+    return slice;
+}
+
 Slice damaged(Slice slice) {
     slice.damaged = true;
     return troubled(std::move(slice), "a truncated or damaged DICOM file", "get it again, or move it away");
@@ -233,7 +239,7 @@ std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
     const gdcm::PixelFormat format = gdcm::ImageHelper::GetPixelFormatValue(file);
     const gdcm::PhotometricInterpretation light = gdcm::ImageHelper::GetPhotometricInterpretationValue(file);
     if (format.GetSamplesPerPixel() != 1 || light == gdcm::PhotometricInterpretation::PALETTE_COLOR)
-        return troubled(plain, fmt::format("colours ({})", trimmed(light.GetString())),
+        return troubled(plain, fmt::format("colours ({})", unpadded(light.GetString())),
                         "convert it to one number a voxel");
     if (text(set, Tag(0x0008, 0x0008)).find("MOSAIC") != std::string::npos)
         return troubled(plain, "slices tiled into one picture (a Siemens mosaic)",
@@ -294,13 +300,12 @@ std::vector<Slice> slices_of(const gdcm::File& file, Slice plain, double left) {
     return all;
 }
 
-std::vector<Slice> scan_file(const std::filesystem::path& file) {
+std::vector<Slice> scan_file(const std::filesystem::path& file) try {
     gdcm::Reader reader;
     reader.SetFileName(file.c_str());
     const bool readable = reader.ReadUpToTag(pixels, {pixels});
     const DataSet& set = reader.GetFile().GetDataSet();
-    Slice plain;
-    plain.file = file;
+    Slice plain = of_file(file);
     plain.series = text(set, Tag(0x0020, 0x000e)) + "/" + text(set, Tag(0x0010, 0x0020)) + "/" +
                    text(set, Tag(0x0010, 0x0010));
     plain.description = text(set, Tag(0x0008, 0x103e));
@@ -317,6 +322,10 @@ std::vector<Slice> scan_file(const std::filesystem::path& file) {
         return {packed(plain, reader.GetFile())};
     if (!readable) return {damaged(plain)};
     return slices_of(reader.GetFile(), plain, double(size) - double(plain.pixels_at));
+} catch (const std::bad_alloc&) {
+    throw;
+} catch (const std::exception&) {  // GDCM's
+    return {damaged(of_file(file))};
 }
 
 // ---- between two processes ----
@@ -380,13 +389,16 @@ Slice from_json(const Json& json, const std::vector<std::filesystem::path>& file
     return s;
 }
 
+// Whether a process of GDCM's ended as it should not, and not for want of what this one needs to start it.
+bool is_of_gdcm(const Error& error) { return std::string_view(error.what()).starts_with("GDCM "); }
+
 // If GDCM crashes on one of them, the halves are scanned apart, until it is found.
 void scan(const std::vector<std::filesystem::path>& files, std::vector<Slice>& all) try {
     if (files.empty()) return;
     std::size_t largest = 0;
     for (const auto& file : files) largest = std::max(largest, std::size_t(std::filesystem::file_size(file)));
-    const Allowance allowance{5 + 0.05 * double(files.size()),
-                              (std::size_t(1) << 28) + 4 * largest + (files.size() << 14)};
+    const std::size_t most = (std::size_t(1) << 28) + 4 * largest + (files.size() << 14);
+    const Allowance allowance{.seconds = 5 + 0.05 * double(files.size()), .bytes = most, .output = most};
     const Written written = isolated("GDCM", files[0].string(), allowance, [&](std::FILE* out) {
         Json found = Json::array();
         for (std::size_t i = 0; i < files.size(); ++i)
@@ -396,11 +408,10 @@ void scan(const std::vector<std::filesystem::path>& files, std::vector<Slice>& a
     });
     const auto bytes = written.bytes();
     for (const Json& slice : Json::parse(bytes.begin(), bytes.end())) all.push_back(from_json(slice, files));
-} catch (const Error&) {
+} catch (const Error& error) {
+    if (!is_of_gdcm(error)) throw;
     if (files.size() == 1) {
-        Slice slice;
-        slice.file = files[0];
-        all.push_back(damaged(slice));
+        all.push_back(damaged(of_file(files[0])));
         return;
     }
     const auto middle = files.begin() + std::ptrdiff_t(files.size() / 2);
@@ -491,14 +502,17 @@ void write_all(std::span<const Slice> slices, std::FILE* out) {
 
 Written pixels_of(std::span<const Slice> slices, const std::filesystem::path& path) {
     double all = 0, largest = 0;
+    std::size_t values = 0;
     for (const Slice& slice : slices) {
         const auto size = double(std::filesystem::file_size(slice.file));
         all += slice.frame == 0 ? size : 0;
         largest = std::max(largest, size);
+        values += std::size_t(slice.size.x) * std::size_t(slice.size.y);
     }
     constexpr double packed = 10;  // times smaller is a compressed slice
-    const Allowance allowance{15 + packed * std::max(all, largest) / 20e6,
-                              (std::size_t(1) << 28) + std::size_t(4 * packed * largest)};
+    const Allowance allowance{.seconds = 15 + packed * std::max(all, largest) / 20e6,
+                              .bytes = (std::size_t(1) << 28) + std::size_t(4 * packed * largest),
+                              .output = values * sizeof(float)};
     return isolated("GDCM", path.string(), allowance, [&](std::FILE* out) { write_all(slices, out); });
 }
 

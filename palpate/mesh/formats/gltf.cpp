@@ -3,6 +3,7 @@
 // here is refused. The numbers may lie as compactly as the format and its extensions allow.
 #include "palpate/base/files.h"
 #include "palpate/mesh/bytes.h"
+#include "palpate/mesh/formats/budget.h"
 #include "palpate/mesh/formats/draco.h"
 #include "palpate/mesh/formats/formats.h"
 #include "palpate/mesh/formats/place.h"
@@ -14,16 +15,13 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace palpate {
 namespace {
 
 using Json = nlohmann::json;
-
-// How much may be made of a file's bytes, since parts may be repeated and lists may be of zeros that are
-// nowhere.
-constexpr std::size_t always_allowed = std::size_t(256) << 20, allowed_times = 64;
 
 // ---- what stands in the JSON ----
 
@@ -119,7 +117,7 @@ std::string from_base64(std::string_view text) {
 
 class Gltf {
  public:
-    explicit Gltf(Source source) : source_(std::move(source)) {}
+    explicit Gltf(Source source) : source_(std::move(source)), budget_(source_) {}
 
     Draft read() {
         open();
@@ -159,7 +157,6 @@ class Gltf {
         json_ = Json::parse(text, nullptr, false);
         if (json_.is_discarded()) broken("JSON that is damaged or truncated");
         if (!json_.is_object()) broken("JSON that is no glTF");
-        allowed_ = always_allowed + allowed_times * source_.whole().size();
     }
 
     // Returns its JSON.
@@ -248,14 +245,6 @@ class Gltf {
 
     // --- bytes ---
 
-    // Whatever is made of the file is counted here, before it is made.
-    void spend(std::size_t count, std::size_t bytes_each) {
-        if (count > allowed_ / bytes_each)
-            source_.broken("more than the file's size warrants, by parts that are repeated",
-                           "export a part of it");
-        allowed_ -= count * bytes_each;
-    }
-
     std::string_view buffer(std::size_t number) {
         const Json& uri = field(list("buffers")[number], "uri");
         if (uri.is_null() && number == 0 && binary_) return *binary_;
@@ -264,7 +253,6 @@ class Gltf {
         if (!is_new) return known->second;
         const std::string_view text = uri.get_ref<const std::string&>();
         known->second = text.starts_with("data:") ? inside(text) : outside(text);
-        allowed_ += allowed_times * known->second.size();
         return known->second;
     }
 
@@ -273,11 +261,17 @@ class Gltf {
         return head.ends_with(";base64") ? from_base64(uri) : percent_decoded(uri);
     }
 
-    std::string outside(std::string_view uri) const {
-        if (const auto file = source_.beside(uri)) return read_text(*file);
-        source_.broken(
-            "the name of another file, " + in_quotes(uri) + ", which is not in its folder or below,",
-            "put it there, or export it as one .glb");
+    // A file adds to the budget once, however many buffers name it; each of them has its bytes anew.
+    std::string outside(std::string_view uri) {
+        const auto file = source_.beside(uri);
+        if (!file)
+            source_.broken(
+                "the name of another file, " + in_quotes(uri) + ", which is not in its folder or below,",
+                "put it there, or export it as one .glb");
+        std::string text = read_text(*file);
+        if (files_.insert(std::filesystem::canonical(*file)).second) budget_.add_file(text.size());
+        budget_.spend(text.size());
+        return text;
     }
 
     // The bytes of a buffer view, and how far apart the entries in it are; 0: without gaps.
@@ -315,12 +309,15 @@ class Gltf {
         const std::size_t count = whole(field(packing, "count"), "a count", 0);
         const std::string mode = text(packing, "mode", ""), filter = text(packing, "filter", "NONE");
         if (stride == 0 || stride > 256) broken("a stride in meshopt's compression that cannot be");
-        const bool vertices = mode == "ATTRIBUTES" && stride % 4 == 0;
+        const bool vertices = mode == "ATTRIBUTES";
+        if (vertices && stride % 4 != 0)
+            broken(
+                fmt::format("a stride of {} in meshopt's compression, which is no multiple of 4,", stride));
         if (!vertices && (mode != "TRIANGLES" || count % 3 != 0) && mode != "INDICES")
             broken("an unknown mode of meshopt's compression, " + in_quotes(mode) + ",");
         if (!vertices && stride != 2 && stride != 4) broken("indices of an impossible size");
         const std::size_t filled = (count + 3) / 4 * 4;  // the filters may work on four at once
-        spend(filled, stride);
+        budget_.spend(filled, stride);
         std::string made(filled * stride, '\0');
         const int failed = vertices
                                ? meshopt_decodeVertexBuffer(made.data(), count, stride, from, bytes.size())
@@ -366,7 +363,7 @@ class Gltf {
                         std::uint32_t(whole(id, "an attribute of Draco's", 0)));
                 }
             }
-        std::vector<DracoMesh> meshes = unpack_draco(packed, source_);
+        std::vector<DracoMesh> meshes = unpack_draco(packed, source_, budget_.left());
         for (std::size_t i = 0; i < meshes.size(); ++i) {
             draco_corners_[primitives[i]] = std::move(meshes[i].corners);
             for (std::size_t k = 0; k < accessors[i].size(); ++k)
@@ -392,7 +389,7 @@ class Gltf {
         if (count > 0 &&
             (offset > there || each > there - offset || count - 1 > (there - offset - each) / stride))
             broken(fmt::format("{} entries promised in {} bytes: truncated", count, there));
-        spend(count, components * sizeof(double));
+        budget_.spend(count, components * sizeof(double));
         std::vector<double> numbers;
         numbers.reserve(count * components);
         for (std::size_t i = 0; i < count; ++i)
@@ -415,13 +412,14 @@ class Gltf {
                                            ->second;
         std::vector<double> numbers;
         if (const auto known = draco_numbers_.find(number); known != draco_numbers_.end()) {
-            numbers = known->second;
-            if (numbers.size() != count * components)
+            if (known->second.size() != count * components)
                 broken("another number of vertices in what Draco packed");
+            budget_.spend(count, components * sizeof(double));
+            numbers = known->second;
         } else if (!field(accessor, "bufferView").is_null()) {
             numbers = numbers_in(accessor, *kind, count, components);
         } else {
-            spend(count, components * sizeof(double));
+            budget_.spend(count, components * sizeof(double));
             numbers.assign(count * components, 0);
         }
         if (const Json& sparse = field(accessor, "sparse"); !sparse.is_null())
@@ -559,6 +557,9 @@ class Gltf {
         bool mirrored = false;
     };
 
+    // What it costs to look at a primitive once more, for each node and each instance that has it.
+    static constexpr std::size_t bytes_a_visit = 100, bytes_a_letter = 16;
+
     void add_mesh(const Json& node, const Place& world) {
         const Json& mesh = entry("meshes", field(node, "mesh"));
         const Json& weights =
@@ -566,10 +567,13 @@ class Gltf {
         const std::vector<Place> bones = bones_of(node);
         std::map<std::string, Vertices> known;
         for (const Json& primitive : list_of(mesh, "primitives")) {
+            budget_.spend(bytes_a_visit);
             const Json& attributes = field(primitive, "attributes");
             const Json& positions = field(attributes, "POSITION");
             if (positions.is_null()) continue;  // for an extension to fill
-            const auto [at, is_new] = known.try_emplace(identity(primitive));
+            std::string name = identity(primitive);
+            budget_.spend(name.size(), bytes_a_letter);
+            const auto [at, is_new] = known.try_emplace(std::move(name));
             if (is_new) at->second = add_vertices(primitive, weights, world, bones);
             add_faces(primitive, at->second);
         }
@@ -602,6 +606,7 @@ class Gltf {
             inverse.is_null() ? std::vector<double>() : numbers_of(inverse, "MAT4");
         if (joints.empty() || (!inverse.is_null() && matrices.size() < 16 * joints.size()))
             broken("a skin with fewer matrices than joints");
+        budget_.spend(joints.size(), sizeof(Place));
         std::vector<Place> bones;
         for (std::size_t i = 0; i < joints.size(); ++i) {
             const Place bind = inverse.is_null() ? Place() : place_of(&matrices[16 * i]);
@@ -665,7 +670,7 @@ class Gltf {
 
     // For each vertex the mean of its joints' places, by weight.
     std::vector<Place> carry(const Json& attributes, const std::vector<Place>& bones, std::size_t count) {
-        spend(count, sizeof(Place));
+        budget_.spend(count, sizeof(Place));
         std::vector<Place> places(count, Place{dmat3(0), dvec3(0)});
         std::vector<double> sums(count, 0);
         const auto add = [&](std::size_t i, double joint, double weight) {
@@ -717,11 +722,12 @@ class Gltf {
         std::vector<double> corners;
         const auto unpacked = draco_corners_.find(&primitive);
         if (unpacked != draco_corners_.end()) {
+            budget_.spend(unpacked->second.size(), sizeof(double));
             corners = unpacked->second;
         } else if (const Json& indices = field(primitive, "indices"); !indices.is_null()) {
             corners = numbers_of(indices, "SCALAR");
         } else {
-            spend(vertices.count, sizeof(double));
+            budget_.spend(vertices.count, sizeof(double));
             for (std::size_t i = 0; i < vertices.count; ++i) corners.push_back(double(i));
         }
         for (double corner : corners)
@@ -739,7 +745,7 @@ class Gltf {
             if (corners[a] != corners[b] && corners[b] != corners[c] && corners[c] != corners[a])
                 add(a, b, c);
         };
-        spend(mode == 4 ? n : 3 * n, 2 * sizeof(Index));
+        budget_.spend(mode == 4 ? n : 3 * n, 2 * sizeof(Index));
         switch (mode) {
             case 0:
                 draft_.loose += n;
@@ -769,9 +775,10 @@ class Gltf {
     }
 
     Source source_;
+    Budget budget_;
     Json json_;
     std::optional<std::string_view> binary_;
-    std::size_t allowed_ = 0;
+    std::set<std::filesystem::path> files_;                     // others, that buffers name
     std::map<std::size_t, std::string> buffers_, unpacked_;     // by number, as far as they are asked for
     std::map<std::size_t, std::vector<double>> draco_numbers_;  // of accessors
     std::map<const Json*, std::vector<double>> draco_corners_;  // of primitives

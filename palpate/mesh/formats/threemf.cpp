@@ -2,8 +2,10 @@
 // others, and of what is built of them. Read are meshes, components, their places and the unit, also where
 // objects lie in files of their own (the production extension); colours and what belongs to printing are read
 // over.
+#include "palpate/mesh/formats/budget.h"
 #include "palpate/mesh/formats/formats.h"
 #include "palpate/mesh/formats/place.h"
+#include "palpate/mesh/formats/units.h"
 #include "palpate/mesh/formats/xml.h"
 
 #include <fmt/format.h>
@@ -20,12 +22,8 @@ namespace {
 
 constexpr int most_nested = 100;
 
-// How much may be made of an archive's bytes, by unpacking and by objects that are repeated.
-constexpr std::size_t always_allowed = std::size_t(256) << 20, allowed_times = 64;
-
-constexpr std::pair<std::string_view, double> unit_names[] = {{"micron", 1e-6},     {"millimeter", 1e-3},
-                                                              {"centimeter", 1e-2}, {"meter", 1.0},
-                                                              {"inch", 0.0254},     {"foot", 0.3048}};
+// What an object costs that is put somewhere, beside its vertices and triangles.
+constexpr std::size_t bytes_an_object = 1000;
 
 // Extensions that a file may require: of the others we do not know what they do to the shape.
 constexpr std::string_view understood[] = {"http://schemas.microsoft.com/3dmanufacturing/production/",
@@ -92,10 +90,7 @@ struct Object {
 
 class ThreeMf {
  public:
-    explicit ThreeMf(Source source)
-        : source_(std::move(source)),
-          archive_(source_),
-          allowed_(always_allowed + allowed_times * source_.whole().size()) {}
+    explicit ThreeMf(Source source) : source_(std::move(source)), archive_(source_), budget_(source_) {}
 
     Draft read() {
         root_ = without_slash(find_root());
@@ -137,16 +132,9 @@ class ThreeMf {
     }
 
     std::string unpack(std::string_view name) {
-        std::string text = archive_.read(name, allowed_);
-        spend(text.size());
+        std::string text = archive_.read(name, budget_.left());
+        budget_.spend(text.size());
         return text;
-    }
-
-    void spend(std::size_t bytes) {
-        if (bytes > allowed_)
-            source_.broken("more than the file's size warrants, by objects that are repeated",
-                           "export a part of it");
-        allowed_ -= bytes;
     }
 
     void read_model(const std::string& file) {
@@ -165,6 +153,7 @@ class ThreeMf {
             };
             const auto part = [&](std::string_view path, std::string_view id) {
                 const std::string in = path.empty() ? file : without_slash(path);
+                budget_.spend(sizeof(Part) + in.size() + id.size());
                 if (!known_.contains(in)) named_.insert(in);
                 return Part{{in, std::string(id)}, place(element["transform"], bad)};
             };
@@ -172,6 +161,7 @@ class ThreeMf {
                 if (file == root_) read_unit(element);
                 check_extensions(element);
             } else if (element.name == "object") {
+                budget_.spend(sizeof(Object) + file.size());
                 object = &objects_[{file, std::string(element["id"])}];
                 object->is_support = element["type"] == "support" || element["type"] == "solidsupport";
             } else if (element.name == "item" && file == root_) {
@@ -202,9 +192,9 @@ class ThreeMf {
 
     void read_unit(const XmlElement& model) {
         const std::string_view name = model.find("unit").value_or("millimeter");
-        const auto unit = std::ranges::find(unit_names, name, &std::pair<std::string_view, double>::first);
-        if (unit == std::end(unit_names)) source_.broken("the unknown unit " + in_quotes(name));
-        draft_.unit = unit->second;
+        const auto unit = metres_of(name);
+        if (!unit) source_.broken("the unknown unit " + in_quotes(name));
+        draft_.unit = *unit;
     }
 
     void check_extensions(const XmlElement& model) const {
@@ -235,6 +225,7 @@ class ThreeMf {
 
     void add(const Name& name, const Place& place, int depth) {
         if (depth > most_nested) source_.broken("objects that are put together of themselves");
+        budget_.spend(bytes_an_object);
         const auto found = objects_.find(name);
         if (found == objects_.end())
             source_.broken(fmt::format("an object {} that is nowhere", in_quotes(name.second)));
@@ -244,7 +235,8 @@ class ThreeMf {
             return;
         }
         const std::size_t first = draft_.positions.size();
-        spend(1000 + sizeof(dvec3) * object.positions.size() + 4 * sizeof(Index) * object.triangles.size());
+        budget_.spend(object.positions.size(), sizeof(dvec3));
+        budget_.spend(object.triangles.size(), 4 * sizeof(Index));
         if (first + object.positions.size() > ~Index(0)) source_.broken("more than 2^32 vertices");
         for (dvec3 p : object.positions) draft_.positions.push_back(place.of(p));
         for (uvec3 t : object.triangles) {
@@ -257,7 +249,7 @@ class ThreeMf {
 
     Source source_;
     Archive archive_;
-    std::size_t allowed_;
+    Budget budget_;
     std::string root_;
     std::set<std::string> known_, named_;  // files that are read, and that are to be
     std::map<Name, Object> objects_;

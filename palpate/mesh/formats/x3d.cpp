@@ -55,7 +55,7 @@ class X3d {
             source_.broken("a PROTO, a node of its own making,", "convert it with another program");
         } else if (element.name == "Script" || element.name == "ROUTE") {
             skipped_ = 1;
-        } else if (element.name != "X3D" && element.name != "Scene" &&
+        } else if (element.name != "X3D" && element.name != "Scene" && !element.name.empty() &&
                    std::isupper(static_cast<unsigned char>(element.name[0]))) {
             node(element);  // what has a small letter is none
         }

@@ -17,7 +17,8 @@ struct XmlReading {
     XML_Parser parser;
     const std::function<bool(const XmlElement&)>& begins;
     const std::function<void(std::string_view)>& ends;
-    bool left_off = false, entities = false;
+    bool left_off = false;
+    const char* refused = nullptr;  // what makes a large file of a small one
     std::exception_ptr thrown{};
 
     template <class F>
@@ -46,11 +47,19 @@ void end(void* reading, const char* name) {
     if (!r.left_off) r.call([&] { r.ends(without_prefix(name)); });
 }
 
+void refuse(void* reading, const char* what) {
+    auto& r = *static_cast<XmlReading*>(reading);
+    r.refused = what;
+    XML_StopParser(r.parser, XML_FALSE);
+}
+
 void refuse_entity(void* reading, const char*, int, const char*, int, const char*, const char*, const char*,
                    const char*) {
-    auto& r = *static_cast<XmlReading*>(reading);
-    r.entities = true;
-    XML_StopParser(r.parser, XML_FALSE);
+    refuse(reading, "entities");
+}
+
+void refuse_default(void* reading, const char*, const char*, const char*, const char* value, int) {
+    if (value) refuse(reading, "defaults");
 }
 
 }  // namespace
@@ -70,6 +79,7 @@ void read_xml(const Source& source, const std::function<bool(const XmlElement&)>
     XML_SetUserData(parser.get(), &reading);
     XML_SetElementHandler(parser.get(), begin, end);
     XML_SetEntityDeclHandler(parser.get(), refuse_entity);
+    XML_SetAttlistDeclHandler(parser.get(), refuse_default);
     std::string_view text = source.whole();
     for (bool good = true, last = false; good && !last;) {
         const std::string_view block = text.substr(0, std::size_t(1) << 24);
@@ -79,7 +89,8 @@ void read_xml(const Source& source, const std::function<bool(const XmlElement&)>
     }
     if (reading.thrown) std::rethrow_exception(reading.thrown);
     if (reading.left_off) return;
-    if (reading.entities) source.broken("XML with entities of its own, which are not read,");
+    if (reading.refused)
+        source.broken(fmt::format("XML with {} of its own, which are not read,", reading.refused));
     const XML_Error error = XML_GetErrorCode(parser.get());
     if (error == XML_ERROR_NO_MEMORY) throw std::bad_alloc();
     if (error != XML_ERROR_NONE)

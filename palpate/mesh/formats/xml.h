@@ -20,7 +20,8 @@ struct XmlElement {
 
 /// Goes through an XML file from its beginning: `begins` is told of each element, and `ends` the name of each
 /// that is over. `begins` may return false to leave off. Throws Error if the text is no XML, if it is not
-/// whole, or if it defines entities, by which a small file can be a large one; and whatever the two throw.
+/// whole, or if it defines entities or defaults of attributes, by which a small file can be a large one; and
+/// whatever the two throw.
 void read_xml(
     const Source& source, const std::function<bool(const XmlElement&)>& begins,
     const std::function<void(std::string_view)>& ends = [](std::string_view) {});
