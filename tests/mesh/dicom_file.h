@@ -70,7 +70,7 @@ class DicomFile {
     }
     static std::string written(std::uint32_t tag, const std::pair<std::string, std::string>& element) {
         const auto& [kind, value] = element;
-        const bool wide = kind == "OB" || kind == "OW" || kind == "SQ" || kind == "UN";
+        const bool wide = kind == "OB" || kind == "OW" || kind == "SQ" || kind == "UN" || kind == "OF";
         return raw(std::uint16_t(tag >> 16)) + raw(std::uint16_t(tag)) + kind +
                (wide ? std::string(2, '\0') + raw(std::uint32_t(value.size()))
                      : raw(std::uint16_t(value.size()))) +

@@ -134,7 +134,7 @@ TEST_F(ReadDicom, RefusesFilesCutAnywhere) {
     put(file(2), std::string(128, 'x') + "DICM" + std::string(1000, 'x'));
     EXPECT_HAS(error_of(file(2), [&] { read_volume(file(2)); }), "damaged");
     put(file(2), "no DICOM");
-    EXPECT_HAS(dicom_error(file(2)), "no DICOM slice");
+    EXPECT_HAS(dicom_error(file(2)), "no DICOM header");
     EXPECT_HAS(dicom_error("gone.dcm"), "cannot open");
     EXPECT_HAS(dicom_error(folder / "gone" / "gone.dcm"), "cannot open");
     put(file(1), "no DICOM");

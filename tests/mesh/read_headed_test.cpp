@@ -356,7 +356,7 @@ TEST_F(ReadNoted, JoinsVoxelsFromSeveralFiles) {
         EXPECT_HAS(volume_error(scratch / "a.nhdr", header(fmt::format("data file: z%02d {}\n", range))),
                    "not understood");
     put(scratch / "a.nhdr", header("data file: z%02d 3 6 1\n"));
-    EXPECT_HAS(error_of(scratch / "z05", [&] { read_volume(scratch / "a.nhdr"); }), "cannot open");
+    EXPECT_HAS(error_of(scratch / "a.nhdr", [&] { read_volume(scratch / "a.nhdr"); }), "z05\"");
     const std::string meta = "ElementType = MET_UCHAR\nElementSpacing = 1 1 1\nHeaderSize = 1";
     EXPECT_EQ(read("a.mhd", metaimage(meta, "LIST\n" + list)).values, expected);
     EXPECT_EQ(read("a.mhd", metaimage(meta, "z%02d 1 4 1")).values, expected);
@@ -369,6 +369,26 @@ TEST_F(ReadNoted, JoinsVoxelsFromSeveralFiles) {
         read("a.mhd", metaimage("ElementType = MET_UCHAR\nElementSpacing = 1 1 1", "packed.raw")).values,
         expected)
         << "though it does not say that it is packed";
+}
+
+TEST_F(ReadNoted, FindsVoxelsUnderANameOfWindows) {
+    std::filesystem::create_directories(scratch / "sub");
+    put(scratch / "sub" / "a.raw", bytes_of<std::uint8_t>(count_up()));
+    const std::string meta = "ElementType = MET_UCHAR\nElementSpacing = 1 1 1";
+    EXPECT_EQ(read("a.mhd", metaimage(meta, "sub\\a.raw")).values, count_up());
+    EXPECT_HAS(volume_error(scratch / "a.mhd", metaimage(meta, "C:\\a.raw")), "a.raw\", which is named in");
+}
+
+TEST_F(ReadNoted, SaysWhatItLeavesOutOfAMetaImage) {
+    read_meta("ElementSpacing = 1 1 1\nCenterOfRotation = 0 0 0\n");
+    EXPECT_EQ(notes, "");
+    const Volume volume = read_meta("ElementSpacing = 1 1 1\nOffset = 1 2 3\nCenterOfRotation = 5 5 5\n");
+    EXPECT_HAS(notes, "its CenterOfRotation is left out");
+    EXPECT_LE(glm::distance(volume.origin, vec3(0.001f, 0.002f, 0.003f)), 1e-8f);
+    EXPECT_HAS(
+        volume_error(scratch / "a.mha", "ObjectType = Tube\nNDims = 3\nNPoints = 3\nPoints =\n1 2 3\n"),
+        "no image (its ObjectType is \"Tube\")");
+    EXPECT_HAS(volume_error(scratch / "a.mha", ""), "the file is empty");
 }
 
 TEST_F(ReadNoted, TakesTheFirstOfSeveralVolumes) {

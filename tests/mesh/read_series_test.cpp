@@ -20,14 +20,16 @@ namespace palpate {
 namespace {
 
 constexpr std::uint32_t kind = 0x00080016, instance = 0x00080018, modality = 0x00080060,
-                        image_type = 0x00080008, series_name = 0x0008103e, patient = 0x00100020,
-                        thickness = 0x00180050, echo = 0x00180081, between = 0x00180088,
-                        imager_spacing = 0x00181164, series = 0x0020000e, acquisition = 0x00200012,
-                        instance_number = 0x00200013, position = 0x00200032, orientation = 0x00200037,
-                        location = 0x00201041, samples = 0x00280002, light = 0x00280004, frames = 0x00280008,
-                        rows = 0x00280010, columns = 0x00280011, pixel_spacing = 0x00280030,
-                        bits = 0x00280100, stored = 0x00280101, high_bit = 0x00280102, has_sign = 0x00280103,
-                        padding = 0x00280120, intercept = 0x00281052, slope = 0x00281053, pixels = 0x7fe00010;
+                        image_type = 0x00080008, series_name = 0x0008103e, patient_name = 0x00100010,
+                        patient = 0x00100020, thickness = 0x00180050, echo = 0x00180081, between = 0x00180088,
+                        imager_spacing = 0x00181164, study = 0x0020000d, series = 0x0020000e,
+                        acquisition = 0x00200012, instance_number = 0x00200013, position = 0x00200032,
+                        orientation = 0x00200037, location = 0x00201041, samples = 0x00280002,
+                        light = 0x00280004, frames = 0x00280008, rows = 0x00280010, columns = 0x00280011,
+                        pixel_spacing = 0x00280030, bits = 0x00280100, stored = 0x00280101,
+                        high_bit = 0x00280102, has_sign = 0x00280103, padding = 0x00280120,
+                        padding_limit = 0x00280121, tables = 0x00283000, intercept = 0x00281052,
+                        slope = 0x00281053, pixels = 0x7fe00010;
 
 const std::string ct = "1.2.840.10008.5.1.4.1.1.2";
 
@@ -243,6 +245,40 @@ TEST_F(ReadSeries, PartsPatientsOfOneSeries) {
     expect_slices(read(file(0)), {0, 1, 2, 3});
 }
 
+TEST_F(ReadSeries, TakesTwoSpellingsOfANameAsOnePatient) {
+    write(4, [](int z) { return slice(z).text(patient_name, "PN", z % 2 ? "Doe^J" : "DOE^J"); });
+    expect_slices(read(folder), {0, 1, 2, 3});
+    EXPECT_EQ(all_notes(), "");
+    write(4, [](int z) { return slice(z).text(patient_name, "PN", z % 2 ? "Doe" : "Roe").without(series); });
+    EXPECT_HAS(error(folder), "2 DICOM series");
+}
+
+TEST_F(ReadSeries, JoinsSlicesThatAreASeriesEach) {
+    auto apart = [](int z) {
+        return slice(z).text(series, "UI", fmt::format("1.2.9.{}", z)).text(study, "UI", "1.7");
+    };
+    write(4, apart);
+    for (const auto& path : {folder, file(2)}) {
+        expect_slices(read(path), {0, 1, 2, 3});
+        EXPECT_HAS(all_notes(), "4 series of one slice each");
+    }
+    write(4, [&](int z) { return apart(z).text(study, "UI", fmt::format("1.7.{}", z)); });
+    EXPECT_HAS(error(folder), "4 series of one slice each, which differ in study");
+    EXPECT_HAS(error(folder), "export the slices of one volume as one series");
+}
+
+TEST_F(ReadSeries, TellsUnreadableNumbersFromMissingOnes) {
+    write(4, [](int z) { return slice(z).text(position, "DS", fmt::format("-10\\-20\\{},0", 30 + 4 * z)); });
+    expect_slices(read(folder), {0, 1, 2, 3});
+    EXPECT_EQ(all_notes(), "its ImagePositionPatient has decimal commas: they are read as points\n");
+    write(4, [](int z) { return slice(z).text(position, "DS", "here").text(slope, "DS", "one"); });
+    read(folder);
+    EXPECT_HAS(all_notes(), "its ImagePositionPatient cannot be read and is left out");
+    EXPECT_HAS(all_notes(), "its RescaleSlope cannot be read and is left out");
+    EXPECT_HAS(all_notes(), "without positions, slices are taken upwards");
+    EXPECT_EQ(all_notes().find("it states no"), std::string::npos);
+}
+
 TEST_F(ReadSeries, TakesRoundedPositionsAsEven) {
     const std::tuple<double, int, bool> series[] = {
         {1.25, 1, true}, {1.25, 1, false}, {0.9375, 2, true}, {0.3, 1, false}, {1.25, 2, false}};
@@ -285,14 +321,14 @@ TEST_F(ReadSeries, SaysHowUnevenSlicesLie) {
 TEST_F(ReadSeries, SaysWhereTheSpacingComesFrom) {
     write(4, [](int z) { return slice(z).without(pixel_spacing).text(imager_spacing, "DS", "1.5\\2"); });
     expect_slices(read(folder), {0, 1, 2, 3});
-    EXPECT_EQ(all_notes(), "it states no PixelSpacing: ImagerPixelSpacing is taken, 2 x 1.5 mm\n");
+    EXPECT_EQ(all_notes(), "without PixelSpacing, ImagerPixelSpacing is taken, 2 x 1.5 mm\n");
     write(4, [](int z) { return slice(z).text(imager_spacing, "DS", "9\\9"); });
     expect_slices(read(folder), {0, 1, 2, 3});
     EXPECT_EQ(all_notes(), "");
     for (const char* nothing : {"", "0\\0", "-1\\2", "x\\y"}) {
         write(4, [&](int z) { return slice(z).text(pixel_spacing, "DS", nothing); });
         EXPECT_LE(glm::distance(read(folder).spacing, vec3(0.001f, 0.001f, 0.004f)), 1e-8f);
-        EXPECT_HAS(all_notes(), "it states no PixelSpacing: 1 mm is assumed");
+        EXPECT_HAS(all_notes(), "without PixelSpacing, 1 mm is assumed");
     }
 }
 
@@ -313,7 +349,7 @@ TEST_F(ReadSeries, FindsPlacesWhereNoPositionIsStated) {
     write(4, [](int z) { return slice(z).without(position).without(orientation); });
     EXPECT_LE(std::abs(read(folder).spacing.z - 0.004f), 1e-8f);
     EXPECT_HAS(all_notes(), "4 mm apart (SliceThickness)");
-    EXPECT_HAS(all_notes(), "no orientation");
+    EXPECT_HAS(all_notes(), "without an orientation");
     write(4, [](int z) { return slice(z).without(position).without(thickness); });
     read(folder);
     EXPECT_HAS(all_notes(), "1 mm apart, which is a guess");
@@ -375,6 +411,81 @@ TEST_F(ReadSeries, ClearsPaddingThatWouldLookLikeTissue) {
     EXPECT_HAS(all_notes(), "3 voxels");
     EXPECT_EQ(with(7).values[area], 7) << "as it is, where it is below the rest";
     EXPECT_EQ(all_notes(), "");
+}
+
+TEST_F(ReadSeries, ClearsARangeOfPadding) {
+    // Either end may be the greater one.
+    for (const auto& [one, limit] : {std::pair(60000, 60010), {60010, 60000}}) {
+        write(3, [&](int z) {
+            std::vector<std::uint16_t> values = picture(z);
+            values[0] = 60000, values[1] = 60005, values[2] = 60010, values[3] = 60011;
+            return slice(z)
+                .number(padding, std::uint16_t(one))
+                .number(padding_limit, std::uint16_t(limit))
+                .binary(pixels, "OW", values);
+        });
+        const Volume volume = read(folder);
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(volume.values[area + i], 0);
+        EXPECT_EQ(volume.values[area + 3], 60011);
+        EXPECT_HAS(all_notes(), "9 voxels");
+    }
+}
+
+TEST_F(ReadSeries, LooksValuesUpInATable) {
+    const auto table = [](std::vector<std::uint16_t> head, const std::vector<std::uint16_t>& values) {
+        return DicomFile().binary(0x00283002, "US", head).binary(0x00283006, "US", values);
+    };
+    const auto with = [&](const DicomFile& lut) {
+        write(3, [&](int z) { return slice(z).items(tables, {lut}); });
+    };
+    with(table({4, 101, 16}, {7, 900, 30, 40}));
+    Volume volume = read(folder);
+    EXPECT_EQ(volume.values[0], 7) << "below the first";
+    EXPECT_EQ(volume.values[area], 7);
+    EXPECT_EQ(volume.values[area + 2], 900);
+    EXPECT_EQ(volume.values[area + 4], 40);
+    EXPECT_EQ(volume.values[area + 5], 40) << "above the last";
+    with(table({3, 101, 8}, {0x0502, 9}));
+    volume = read(folder);
+    EXPECT_EQ(volume.values[area + 1], 2);
+    EXPECT_EQ(volume.values[area + 2], 5);
+    EXPECT_EQ(volume.values[area + 3], 9);
+    with(table({4, 101, 16}, {7, 900}));
+    EXPECT_HAS(error(folder), "a table of values (ModalityLUTSequence) that is not whole");
+}
+
+TEST_F(ReadSeries, SaysThatItReadsNoFloatPixels) {
+    write(3, [](int z) {
+        return slice(z).without(pixels).binary(0x7fe00008, "OF", std::vector<float>(area)).number(bits, 32);
+    });
+    EXPECT_HAS(error(folder), "float pixels (FloatPixelData), which are not read");
+}
+
+TEST_F(ReadSeries, ReadsANuclearMedicineTomogram) {
+    const std::uint32_t order = 0x00540080, detectors = 0x00540022;
+    DicomFile file = slice(0);
+    std::vector<std::uint16_t> all, numbers;
+    for (int z = 0; z < 4; ++z) {
+        for (const auto value : picture(z)) all.push_back(value);
+        numbers.push_back(std::uint16_t(z + 1));
+    }
+    file.text(kind, "UI", "1.2.840.10008.5.1.4.1.1.20").text(modality, "CS", "NM").text(between, "DS", "4");
+    file.without(position).without(orientation).text(frames, "IS", "4").binary(pixels, "OW", all);
+    file.items(
+        detectors,
+        {DicomFile().text(position, "DS", "-10\\-20\\30").text(orientation, "DS", "1\\0\\0\\0\\1\\0")});
+    DicomFile tomogram = file;
+    tomogram.binary(order, "US", numbers);
+    put(folder / "nm.dcm", tomogram.bytes());
+    expect_slices(read(folder / "nm.dcm"), {0, 1, 2, 3});
+    EXPECT_EQ(all_notes(), "");
+    put(folder / "nm.dcm", tomogram.text(between, "DS", "-4").bytes());
+    const Volume down = read(folder / "nm.dcm");
+    EXPECT_EQ(down.values[0], 300) << "the last lies lowest";
+    EXPECT_LE(std::abs(down.origin.z - 0.018f), 1e-7f);
+    put(folder / "nm.dcm", file.bytes());
+    EXPECT_HAS(error(folder / "nm.dcm"), "4 nuclear medicine frames in one file that does not say");
+    EXPECT_HAS(error(folder / "nm.dcm"), "dcm2niix");
 }
 
 // The slices of one file, as enhanced CT and MR have them.

@@ -415,6 +415,25 @@ TEST(ReadVolume, RefusesMissingAndOtherFiles) {
     EXPECT_HAS(error_of(scratch / "folder.nii", [&] { read_volume(scratch / "folder.nii"); }), "folder");
 }
 
+TEST(ReadVolume, SaysThatAFileIsEmptyOrCutOffInItsHeader) {
+    Scratch scratch;
+    EXPECT_HAS(volume_error(scratch / "a.nii", ""), "the file is empty");
+    for (const std::size_t size : {4, 100, 347})
+        EXPECT_HAS(volume_error(scratch / "a.nii", small().bytes().substr(0, size)),
+                   "header that is cut off");
+    EXPECT_HAS(volume_error(scratch / "a.nii", "solid of another kind"), "no NIfTI header");
+}
+
+TEST(ReadVolume, TakesVoxelsBehindTheHeaderWhereTheyWouldOverlapIt) {
+    Scratch scratch;
+    std::string bytes = small().set<float>(108, 0).bytes();
+    bytes.erase(348, 4);
+    put(scratch / "a.nii", bytes);
+    std::vector<std::string> notes;
+    EXPECT_EQ(read_volume(scratch / "a.nii", {}, &notes).values, count_up(24));
+    EXPECT_HAS(notes.at(1), "would begin at byte 0, within its header: they are taken from byte 348 on");
+}
+
 TEST(ReadVolume, SurvivesDamagedHeadersInSilence) {
     Scratch scratch;
     const std::string whole =

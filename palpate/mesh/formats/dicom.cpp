@@ -1,5 +1,7 @@
 #include "palpate/mesh/formats/dicom.h"
 
+#include "palpate/mesh/formats/voxels.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -147,6 +149,25 @@ std::map<std::string, Group> by_trouble(const Group& all) {
     refuse_slice(worst->second[0]);
 }
 
+// Series of one slice each that are one volume for all that they say, as some exporters number every slice
+// as a series: all that are alike to the named one, or to the first. Empty if they are not.
+Group joined(const std::map<std::string, Group>& singles, const std::filesystem::path& named,
+             std::vector<std::string>& notes) {
+    Group slices;
+    for (const auto& [uid, group] : singles)
+        if (group.size() == 1) slices.push_back(group[0]);
+    const auto groups = grouped(slices, [](const Slice& a, const Slice& b) {
+        return same_shape(a, b) && a.study == b.study && a.description == b.description;
+    });
+    if (groups.empty() || (named.empty() && groups.size() > 1)) return {};
+    const Group& taken = taken_of(groups, named);
+    if (taken.size() < 3 || !taken[0].position || !taken[0].direction) return {};
+    notes.push_back(fmt::format(
+        "{} series of one slice each, alike in study, description and shape: they are taken as one",
+        taken.size()));
+    return taken;
+}
+
 Group one_series(const Group& all, const std::filesystem::path& named, const std::filesystem::path& path,
                  std::vector<std::string>& notes) {
     std::map<std::string, Group> series;
@@ -156,16 +177,29 @@ Group one_series(const Group& all, const std::filesystem::path& named, const std
         const auto slice = std::ranges::find(all, named, &Slice::file);
         if (slice == all.end()) refuse("no DICOM slice", named, "name another file");
         if (!slice->trouble.empty()) refuse_slice(*slice);
-        return series[slice->series];
+        const Group& own = series[slice->series];
+        const Group more = own.size() == 1 ? joined(series, named, notes) : Group();
+        return more.empty() ? own : more;
     }
     const auto is_single = [](const auto& one) {
         return taken_of(grouped(one.second, same_shape), {}).size() < 2;
     };
-    const std::size_t before = series.size();
+    std::map<std::string, Group> singles = series;
     std::erase_if(series, is_single);
-    if (series.empty()) refuse_all(all, path);
-    if (before > series.size())
-        notes.push_back(fmt::format("{} series of a single slice left out", before - series.size()));
+    std::erase_if(singles, [&](const auto& one) { return series.contains(one.first); });
+    if (series.empty()) {
+        const Group one = joined(singles, named, notes);
+        if (!one.empty()) return one;
+        if (singles.size() > 1)
+            refuse(
+                fmt::format("{} series of one slice each, which differ in study, description, size, spacing "
+                            "or angle,",
+                            singles.size()),
+                path, "export the slices of one volume as one series");
+        refuse_all(all, path);
+    }
+    if (!singles.empty())
+        notes.push_back(fmt::format("{} series of a single slice left out", singles.size()));
     if (series.size() == 1) return series.begin()->second;
     std::string list;
     for (const auto& [uid, slices] : series) list += (list.empty() ? "" : ", ") + summary(slices, path);
@@ -434,10 +468,17 @@ void check_straight(const Group& slices, const Line& line, double rounding,
 
 void note_spacing(const Slice& slice, std::vector<std::string>& notes) {
     if (slice.spacing_source.empty())
-        notes.push_back("it states no PixelSpacing: 1 mm is assumed");
+        notes.push_back("without PixelSpacing, 1 mm is assumed");
     else if (slice.spacing_source != "PixelSpacing")
-        notes.push_back(fmt::format("it states no PixelSpacing: {} is taken, {} x {} mm",
-                                    slice.spacing_source, slice.spacing.x, slice.spacing.y));
+        notes.push_back(fmt::format("without PixelSpacing, {} is taken, {} x {} mm", slice.spacing_source,
+                                    slice.spacing.x, slice.spacing.y));
+}
+
+// Each once, whichever slices it is of.
+void note_doubts(const Group& slices, std::vector<std::string>& notes) {
+    std::set<std::string> all;
+    for (const Slice& slice : slices) all.insert(slice.doubts.begin(), slice.doubts.end());
+    notes.insert(notes.end(), all.begin(), all.end());
 }
 
 // The heights of slices without positions.
@@ -445,13 +486,13 @@ std::vector<double> guessed_heights(const Group& slices, std::vector<std::string
     std::vector<double> heights;
     const Slice& first = slices[0];
     if (std::ranges::all_of(slices, [](const Slice& s) { return s.location.has_value(); })) {
-        notes.push_back("it states no positions: SliceLocation is taken, upwards");
+        notes.push_back("without positions, SliceLocation is taken, upwards");
         for (const Slice& slice : slices) heights.push_back(*slice.location);
         return heights;
     }
     const double step = first.between > 0 ? first.between : first.thickness > 0 ? first.thickness : 1;
     notes.push_back(fmt::format(
-        "it states no positions: slices are taken upwards in the order of their numbers, {} mm apart{}", step,
+        "without positions, slices are taken upwards in the order of their numbers, {} mm apart{}", step,
         first.between > 0     ? " (SpacingBetweenSlices)"
         : first.thickness > 0 ? " (SliceThickness)"
                               : ", which is a guess"));
@@ -461,8 +502,10 @@ std::vector<double> guessed_heights(const Group& slices, std::vector<std::string
 
 Grid place(const Group& slices, const std::filesystem::path& path, std::vector<std::string>& notes) {
     const Slice& first = slices[0];
+    note_doubts(slices, notes);
     note_spacing(first, notes);
-    if (!first.direction) notes.push_back("it states no orientation: rows to the left, columns to the back");
+    if (!first.direction)
+        notes.push_back("without an orientation, rows are taken to the left, columns to the back");
     const dmat3 direction = first.direction.value_or(dmat3(1));
     std::vector<double> heights;
     double rounding = 0;
@@ -490,14 +533,15 @@ Grid place(const Group& slices, const std::filesystem::path& path, std::vector<s
 void clear_padding(const Group& slices, std::vector<float>& values) {
     if (std::ranges::none_of(slices, [](const Slice& slice) { return slice.padding.has_value(); })) return;
     const std::size_t each = values.size() / slices.size();
-    auto padding = [&](std::size_t i) { return slices[i / each].padding; };
+    auto is_padding = [&](std::size_t i) {
+        const auto outside = slices[i / each].padding;
+        return outside && values[i] >= float(outside->x) && values[i] <= float(outside->y);
+    };
     float lowest = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (const auto outside = padding(i); !outside || values[i] != float(*outside))
-            lowest = std::min(lowest, values[i]);
+        if (!is_padding(i)) lowest = std::min(lowest, values[i]);
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (const auto outside = padding(i); outside && values[i] == float(*outside) && values[i] > lowest)
-            values[i] = std::numeric_limits<float>::quiet_NaN();
+        if (values[i] > lowest && is_padding(i)) values[i] = std::numeric_limits<float>::quiet_NaN();
 }
 
 }  // namespace
@@ -523,7 +567,8 @@ Reading read_dicom(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path)) refuse("cannot open", path, "check the name and that it may be read");
     const bool index = lower_name(path) == "dicomdir";  // it stands for the folder that it lies in
     const bool is_folder = index || std::filesystem::is_directory(path);
-    if (!is_folder && !holds_dicom(path)) refuse("no DICOM slice", path, "name another file");
+    if (!is_folder) open_file(path);  // throws Error if it is a pipe, a device, or locked
+    if (!is_folder && !holds_dicom(path)) refuse_start("DICOM", path);
     std::filesystem::path folder = std::filesystem::is_directory(path) ? path : path.parent_path();
     if (folder.empty()) folder = ".";
     const std::filesystem::path named = is_folder ? "" : folder / path.filename();

@@ -21,6 +21,7 @@ struct Slice {
     bool damaged = false;  // it would be one, were it whole
 
     std::string series;       // what slices of one series share
+    std::string study;        // what series of one examination share, with the patient
     std::string description;  // of the series
     int number = 0;           // the scanner's own count
     /// What may part volumes in one place: time, echo, ..., each with its name, in the order of preference.
@@ -36,14 +37,16 @@ struct Slice {
     double thickness = 0, between = 0;  // of slices; 0: not stated
 
     double slope = 1, intercept = 0;
-    std::optional<double> padding;  // the value outside the picture, after slope and intercept
-    std::size_t pixels_at = 0;      // byte of the file at which its pixels begin
+    std::optional<dvec2> padding;     // the least and the most of what is outside the picture, as values
+    std::vector<std::string> doubts;  // what its header says in a way that cannot be taken as it stands
+    std::size_t pixels_at = 0;        // byte of the file at which its pixels begin
 };
 
 /// What GDCM finds in the headers of these files: one slice a picture, or one with `trouble`.
 std::vector<Slice> scan(const std::vector<std::filesystem::path>& files);
 
-/// The values of these slices, one after the other; slope and intercept are applied. `path`: for messages.
+/// The values of these slices, one after the other; slope and intercept, or a table, are applied. `path`: for
+/// messages.
 /// Throws Error if one is truncated, damaged, or packed in a way that GDCM does not know.
 std::vector<float> read_pixels(const std::vector<Slice>& slices, const std::filesystem::path& path);
 

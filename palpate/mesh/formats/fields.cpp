@@ -64,6 +64,16 @@ std::vector<std::string> of_pattern(const std::string& data, const std::filesyst
     return names;
 }
 
+// The file of this name beside another. Windows writes "sub\slice.raw".
+std::filesystem::path beside(const std::filesystem::path& path, const std::string& name) {
+    const std::filesystem::path folder = path.parent_path();
+    std::string slashed = name;
+    std::ranges::replace(slashed, '\\', '/');
+    const bool by_windows =
+        !std::filesystem::exists(folder / name) && std::filesystem::exists(folder / slashed);
+    return folder / (by_windows ? slashed : name);
+}
+
 }  // namespace
 
 std::string Fields::operator[](const std::string& name) const {
@@ -122,7 +132,7 @@ std::vector<std::filesystem::path> data_files(const Fields& fields, const std::s
         names = of_pattern(data, path);
     if (names.empty()) refuse("an empty list of files", path);
     std::vector<std::filesystem::path> files;
-    for (const std::string& name : names) files.push_back(path.parent_path() / name);
+    for (const std::string& name : names) files.push_back(beside(path, name));
     return files;
 }
 

@@ -79,11 +79,13 @@ struct Attributes {
     }
 };
 
-// "1.25\-3": nothing unless all are finite numbers.
-std::vector<double> numbers(std::string_view text) {
+// "1.25\-3": nothing unless all are finite numbers. Some exporters write "1,25"; it can mean nothing else.
+std::vector<double> numbers(std::string text) {
+    std::ranges::replace(text, ',', '.');
+    std::string_view rest = text;
     std::vector<double> all;
-    while (!text.empty()) {
-        std::string_view one = until('\\', text);
+    while (!rest.empty()) {
+        std::string_view one = until('\\', rest);
         const auto number = spelled(word(one, " "));
         if (!number || !std::isfinite(*number)) return {};
         all.push_back(*number);
@@ -103,7 +105,7 @@ double last_place(std::string_view text) {
     while (!text.empty()) {
         std::string_view one = until('\\', text);
         one = word(one, " ");
-        const std::size_t point = one.find('.'), last = one.find_last_not_of('0');
+        const std::size_t point = one.find_first_of(".,"), last = one.find_last_not_of('0');
         if (point != std::string_view::npos && last > point) most = std::max(most, int(last - point));
     }
     return std::pow(10.0, -most);
@@ -156,15 +158,83 @@ std::vector<std::pair<std::string, std::string>> marks_of(const Attributes& says
             {"their files", says.own ? file.filename().string() : ""}};
 }
 
-// The value outside the picture, as it is stored.
-std::optional<double> padding_of(const DataSet& set, bool has_sign) {
-    const Tag tag(0x0028, 0x0120);
+// The numbers of 16 bits that an attribute holds.
+std::vector<std::uint16_t> words(const DataSet& set, const Tag& tag) {
     const gdcm::ByteValue* value =
         set.FindDataElement(tag) ? set.GetDataElement(tag).GetByteValue() : nullptr;
-    if (!value || value->GetLength() < 2) return std::nullopt;
-    std::uint16_t stored;
-    std::memcpy(&stored, value->GetPointer(), sizeof stored);
-    return has_sign ? double(std::int16_t(stored)) : double(stored);
+    if (!value) return {};
+    std::vector<std::uint16_t> all(value->GetLength() / sizeof(std::uint16_t));
+    std::memcpy(all.data(), value->GetPointer(), all.size() * sizeof(std::uint16_t));
+    return all;
+}
+
+double as_stored(std::uint16_t word, bool has_sign) {
+    return has_sign ? double(std::int16_t(word)) : double(word);
+}
+
+// What turns stored numbers into values where slope and intercept do not: the Modality LUT.
+struct Table {
+    double first = 0;  // the stored number that its first value is for
+    std::vector<float> values;
+
+    // Numbers below the first get its value, those above the last get that one's.
+    float operator()(double stored) const {
+        return values[std::size_t(std::clamp(stored - first, 0.0, double(values.size() - 1)))];
+    }
+};
+
+const Tag tables(0x0028, 0x3000);
+
+// Without values if there is none, or if it is not whole.
+Table table_of(const DataSet& set, bool has_sign) {
+    const DataSet* lut = item(set, tables, 0);
+    if (!lut) return {};
+    const auto head = words(*lut, Tag(0x0028, 0x3002)), data = words(*lut, Tag(0x0028, 0x3006));
+    if (head.size() != 3) return {};
+    const std::size_t count = head[0] == 0 ? 1 << 16 : head[0];
+    Table table{as_stored(head[1], has_sign), {}};
+    if (data.size() >= count) {
+        table.values.assign(data.begin(), data.begin() + std::ptrdiff_t(count));
+    } else if (head[2] == 8 && data.size() == (count + 1) / 2) {  // two to a word, the first one low
+        for (std::size_t i = 0; i < count; ++i)
+            table.values.push_back(float(i % 2 == 0 ? data[i / 2] & 0xff : data[i / 2] >> 8));
+    }
+    return table;
+}
+
+// What lies outside the picture, from the least to the most, as it is stored. (PS3.3 C.7.5.1.1.2)
+std::optional<dvec2> padding_of(const DataSet& set, bool has_sign) {
+    const auto one = words(set, Tag(0x0028, 0x0120)), limit = words(set, Tag(0x0028, 0x0121));
+    if (one.empty()) return std::nullopt;
+    const double a = as_stored(one[0], has_sign), b = limit.empty() ? a : as_stored(limit[0], has_sign);
+    return dvec2(std::min(a, b), std::max(a, b));
+}
+
+// Numbers of a slice that are written wrongly.
+std::vector<std::string> doubts_of(const Attributes& says) {
+    const Tag measures(0x0028, 0x9110), values(0x0028, 0x9145);
+    const struct {
+        const char* name;
+        Tag tag, group;
+        std::size_t count;
+    } all[] = {{"ImagePositionPatient", Tag(0x0020, 0x0032), Tag(0x0020, 0x9113), 3},
+               {"ImageOrientationPatient", Tag(0x0020, 0x0037), Tag(0x0020, 0x9116), 6},
+               {"PixelSpacing", Tag(0x0028, 0x0030), measures, 2},
+               {"SliceThickness", Tag(0x0018, 0x0050), measures, 1},
+               {"SpacingBetweenSlices", Tag(0x0018, 0x0088), measures, 1},
+               {"SliceLocation", Tag(0x0020, 0x1041), measures, 1},
+               {"RescaleSlope", Tag(0x0028, 0x1053), values, 1},
+               {"RescaleIntercept", Tag(0x0028, 0x1052), values, 1}};
+    std::vector<std::string> doubts;
+    for (const auto& [name, tag, group, count] : all) {
+        const std::string said = says(tag, group);
+        if (said.empty()) continue;
+        if (numbers(said).size() < count)
+            doubts.push_back(fmt::format("its {} cannot be read and is left out", name));
+        else if (said.find(',') != std::string::npos)
+            doubts.push_back(fmt::format("its {} has decimal commas: they are read as points", name));
+    }
+    return doubts;
 }
 
 Slice slice_of(const Attributes& says, const Slice& plain, bool has_sign) {
@@ -185,8 +255,15 @@ Slice slice_of(const Attributes& says, const Slice& plain, bool has_sign) {
         slice.slope = *slope;
     if (const auto dose = number(says(Tag(0x3004, 0x000e)))) slice.slope = *dose;
     slice.intercept = number(says(Tag(0x0028, 0x1052), values)).value_or(0);
-    if (const auto padding = padding_of(says.file, has_sign))
-        slice.padding = *padding * slice.slope + slice.intercept;
+    slice.doubts = doubts_of(says);
+    if (const auto padding = padding_of(says.file, has_sign)) {
+        const Table table = table_of(says.file, has_sign);
+        auto value = [&](double stored) {
+            return table.values.empty() ? stored * slice.slope + slice.intercept : double(table(stored));
+        };
+        const double a = value(padding->x), b = value(padding->y);
+        slice.padding = dvec2(std::min(a, b), std::max(a, b));
+    }
     return slice;
 }
 
@@ -244,6 +321,12 @@ std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
     if (text(set, Tag(0x0008, 0x0008)).find("MOSAIC") != std::string::npos)
         return troubled(plain, "slices tiled into one picture (a Siemens mosaic)",
                         "convert it with dcm2niix");
+    if (set.FindDataElement(Tag(0x7fe0, 0x0008)) || set.FindDataElement(Tag(0x7fe0, 0x0009)))
+        return troubled(plain, "float pixels (FloatPixelData), which are not read,",
+                        "export it with whole numbers, or as NIfTI or NRRD");
+    if (set.FindDataElement(tables) && table_of(set, format.GetPixelRepresentation() == 1).values.empty())
+        return troubled(plain, "a table of values (ModalityLUTSequence) that is not whole",
+                        "export it with RescaleSlope and RescaleIntercept");
     return std::nullopt;
 }
 
@@ -260,6 +343,36 @@ std::vector<Slice> dose_slices(const DataSet& set, Slice plain, std::size_t fram
         all.push_back(plain);
     }
     return all;
+}
+
+// Those of a nuclear medicine tomogram, which says where the first lies, and how far and on which side of it
+// (by the sign) the next. Empty for what is none.
+std::vector<Slice> tomogram_slices(const DataSet& set, Slice plain, std::size_t frames) {
+    const auto order = words(set, Tag(0x0054, 0x0080));
+    const Attributes detector{.file = set, .shared = &set};
+    const Tag detectors(0x0054, 0x0022);
+    const auto first = numbers(detector(Tag(0x0020, 0x0032), detectors));
+    const double between = number(text(set, Tag(0x0018, 0x0088))).value_or(plain.thickness);
+    plain.direction = direction_of(detector(Tag(0x0020, 0x0037), detectors));
+    if (order.size() != frames || first.size() != 3 || between == 0 || !plain.direction) return {};
+    std::vector<Slice> all;
+    for (std::size_t i = 0; i < frames; ++i) {
+        plain.frame = plain.number = int(i);
+        plain.position =
+            dvec3(first[0], first[1], first[2]) + (*plain.direction)[2] * (between * (order[i] - 1.0));
+        plain.marks.back().second = plain.file.filename().string();
+        all.push_back(plain);
+    }
+    return all;
+}
+
+// Why a file of several pictures is no volume.
+Slice film(const DataSet& set, const Slice& plain, std::size_t frames) {
+    const bool nuclear = text(set, Tag(0x0008, 0x0060)) == "NM";
+    return troubled(plain,
+                    fmt::format("{} {} in one file that does not say where each lies{}", frames,
+                                nuclear ? "nuclear medicine frames" : "pictures", nuclear ? "" : " (a film)"),
+                    nuclear ? "convert it with dcm2niix" : "give a series of slices");
 }
 
 // The pictures of a file whose header GDCM has read.
@@ -282,17 +395,14 @@ std::vector<Slice> slices_of(const gdcm::File& file, Slice plain, double left) {
     const bool has_sign = format.GetPixelRepresentation() == 1;
     if (frames == 1 && !set.FindDataElement(Tag(0x5200, 0x9230)))
         return {slice_of({.file = set}, plain, has_sign)};
-    if (auto doses = dose_slices(set, slice_of({.file = set}, plain, has_sign), frames); !doses.empty())
-        return doses;
+    for (const auto stacked : {dose_slices, tomogram_slices})
+        if (auto all = stacked(set, slice_of({.file = set}, plain, has_sign), frames); !all.empty())
+            return all;
     const DataSet* shared = item(set, Tag(0x5200, 0x9229), 0);
     std::vector<Slice> all;
     for (std::size_t i = 0; i < frames; ++i) {
         const DataSet* own = item(set, Tag(0x5200, 0x9230), i);
-        if (!own)
-            return {troubled(
-                plain,
-                fmt::format("{} pictures in one file that does not say where each lies (a film)", frames),
-                "give a series of slices")};
+        if (!own) return {film(set, plain, frames)};
         plain.frame = int(i);
         all.push_back(slice_of({.file = set, .own = own, .shared = shared}, plain, has_sign));
         all.back().number = int(i);
@@ -306,8 +416,10 @@ std::vector<Slice> scan_file(const std::filesystem::path& file) try {
     const bool readable = reader.ReadUpToTag(pixels, {pixels});
     const DataSet& set = reader.GetFile().GetDataSet();
     Slice plain = of_file(file);
-    plain.series = text(set, Tag(0x0020, 0x000e)) + "/" + text(set, Tag(0x0010, 0x0020)) + "/" +
-                   text(set, Tag(0x0010, 0x0010));
+    const std::string uid = text(set, Tag(0x0020, 0x000e)), patient = text(set, Tag(0x0010, 0x0020));
+    // A name may be spelled in two ways, so it counts only where nothing else tells patients apart.
+    plain.series = uid + "/" + patient + "/" + (uid.empty() ? text(set, Tag(0x0010, 0x0010)) : "");
+    plain.study = text(set, Tag(0x0020, 0x000d)) + "/" + patient;
     plain.description = text(set, Tag(0x0008, 0x103e));
     plain.number = int(number(text(set, Tag(0x0020, 0x0013))).value_or(0));
     plain.pixels_at = reader.GetStreamCurrentPosition();
@@ -339,6 +451,7 @@ Json to_json(const Slice& s, std::size_t file) {
                  {"remedy", s.remedy},
                  {"damaged", s.damaged},
                  {"series", s.series},
+                 {"study", s.study},
                  {"description", s.description},
                  {"number", s.number},
                  {"marks", s.marks},
@@ -350,11 +463,12 @@ Json to_json(const Slice& s, std::size_t file) {
                  {"between", s.between},
                  {"slope", s.slope},
                  {"intercept", s.intercept},
+                 {"doubts", s.doubts},
                  {"pixels_at", s.pixels_at}};
     if (s.direction) json["direction"] = list(&(*s.direction)[0][0], 9);
     if (s.position) json["position"] = list(&(*s.position)[0], 3);
     if (s.location) json["location"] = *s.location;
-    if (s.padding) json["padding"] = *s.padding;
+    if (s.padding) json["padding"] = list(&(*s.padding)[0], 2);
     return json;
 }
 
@@ -366,6 +480,7 @@ Slice from_json(const Json& json, const std::vector<std::filesystem::path>& file
     json["remedy"].get_to(s.remedy);
     json["damaged"].get_to(s.damaged);
     json["series"].get_to(s.series);
+    json["study"].get_to(s.study);
     json["description"].get_to(s.description);
     json["number"].get_to(s.number);
     json["marks"].get_to(s.marks);
@@ -377,6 +492,7 @@ Slice from_json(const Json& json, const std::vector<std::filesystem::path>& file
     json["between"].get_to(s.between);
     json["slope"].get_to(s.slope);
     json["intercept"].get_to(s.intercept);
+    json["doubts"].get_to(s.doubts);
     json["pixels_at"].get_to(s.pixels_at);
     if (json.contains("direction")) {
         s.direction.emplace(0.0);
@@ -385,7 +501,7 @@ Slice from_json(const Json& json, const std::vector<std::filesystem::path>& file
     if (json.contains("position"))
         s.position = dvec3(json["position"][0], json["position"][1], json["position"][2]);
     if (json.contains("location")) s.location = json["location"];
-    if (json.contains("padding")) s.padding = json["padding"];
+    if (json.contains("padding")) s.padding = dvec2(json["padding"][0], json["padding"][1]);
     return s;
 }
 
@@ -431,6 +547,7 @@ struct Pixels {
     std::filesystem::path file;
     std::vector<char> bytes;
     gdcm::PixelFormat format;
+    Table table;
 };
 
 Pixels read_picture(const std::filesystem::path& file) {
@@ -438,8 +555,11 @@ Pixels read_picture(const std::filesystem::path& file) {
     reader.SetFileName(file.c_str());
     if (!reader.Read()) refuse_packing(reader.GetFile(), file);
     const gdcm::Image& image = reader.GetImage();
-    Pixels picture{
-        .file = file, .bytes = std::vector<char>(image.GetBufferLength()), .format = image.GetPixelFormat()};
+    Pixels picture{.file = file,
+                   .bytes = std::vector<char>(image.GetBufferLength()),
+                   .format = image.GetPixelFormat(),
+                   .table = table_of(reader.GetFile().GetDataSet(),
+                                     image.GetPixelFormat().GetPixelRepresentation() == 1)};
     if (!image.GetBuffer(picture.bytes.data())) refuse_packing(reader.GetFile(), file);
     // GDCM swaps the bytes of each half of a number of 32 bits, but not the halves.
     const bool turned =
@@ -466,7 +586,8 @@ void write_values(const Pixels& picture, const Slice& slice, std::FILE* out) {
         std::memcpy(&raw, from + i * sizeof(T), sizeof raw);
         raw = std::make_unsigned_t<T>(raw << (unused - below));
         const T number = T(T(raw) >> unused);
-        values[i] = float(double(number) * slice.slope + slice.intercept);
+        values[i] = picture.table.values.empty() ? float(double(number) * slice.slope + slice.intercept)
+                                                 : picture.table(double(number));
     }
     if (std::fwrite(values.data(), sizeof(float), count, out) != count) throw std::bad_alloc();
 }

@@ -52,6 +52,11 @@ Grid place_of(const Fields& fields, ivec3 dims, std::size_t count, std::vector<s
     }
     const auto turn = first_of(fields, {"transformmatrix", "rotation", "orientation"}, count * count, path);
     const auto offset = first_of(fields, {"offset", "position", "origin"}, count, path);
+    // ITK does not apply it either, so that a volume lies where ITK's programs show it.
+    if (const auto centre = fields.numbers("centerofrotation", 0, path);
+        std::ranges::any_of(centre, [](double c) { return c != 0; }))
+        notes.push_back(
+            "its CenterOfRotation is left out: its Offset is taken as the place of the first voxel");
     dmat3 steps(0);
     dvec3 origin(0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -85,6 +90,9 @@ Layout layout_of(const Fields& fields, const std::filesystem::path& path) {
 Reading read_metaimage(const std::filesystem::path& path) {
     const auto in = open_file(path);
     const Fields fields = read_fields(*in, '=', "elementdatafile", path);
+    if (const std::string kind = fields["objecttype"]; !kind.empty() && small_letters(kind) != "image")
+        refuse("no image (its ObjectType is " + in_quotes(kind) + ")", path,
+               "give a file whose ObjectType is Image");
     const std::string data = fields["elementdatafile"];
     if (data.empty() || !fields.has("dimsize")) refuse_start("MetaImage", path);
 

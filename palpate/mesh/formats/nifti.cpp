@@ -101,7 +101,7 @@ Header header_2(const char* raw, bool swapped, Form form) {
 
 Header read_header(std::istream& in, const std::filesystem::path& path) {
     std::array<char, size_2> raw{};
-    if (!in.read(raw.data(), size_1)) refuse_start("NIfTI", path);
+    in.read(raw.data(), size_1);
     std::int32_t size;
     std::memcpy(&size, raw.data(), sizeof size);
     const std::int32_t turned = std::int32_t(__builtin_bswap32(std::uint32_t(size)));
@@ -110,14 +110,17 @@ Header read_header(std::istream& in, const std::filesystem::path& path) {
 
     const bool two = size == int(size_2);
     if (!two && size != int(size_1)) refuse_start("NIfTI", path);
-    if (two && !in.read(raw.data() + size_1, size_2 - size_1)) refuse_start("NIfTI", path);
+    if (two) in.read(raw.data() + size_1, size_2 - size_1);
     const std::string magic(raw.data() + (two ? 4 : 344), 3);
     const char version = two ? '2' : '1';
-    if (magic[0] == 'n' && magic[2] == version && (magic[1] == '+' || magic[1] == 'i')) {
+    const bool known = magic[0] == 'n' && magic[2] == version && (magic[1] == '+' || magic[1] == 'i');
+    if (two && !known) refuse_start("NIfTI", path);
+    if (!in) refuse("a NIfTI header that is cut off", path, "get the file again");
+    if (known) {
         const Form form = magic[1] == '+' ? Form::one_file : Form::pair;
         return two ? header_2(raw.data(), swapped, form) : header_1(raw.data(), swapped, form);
     }
-    if (two || lower_name(path).ends_with(".nii")) refuse_start("NIfTI", path);
+    if (lower_name(path).ends_with(".nii")) refuse_start("NIfTI", path);
     return header_1(raw.data(), swapped, Form::analyze);
 }
 
@@ -277,6 +280,17 @@ Layout layout_of(const Header& header, std::size_t voxels, std::vector<std::stri
     return layout;
 }
 
+// How far behind the header's own bytes the voxels of one file begin. Where it says that they begin within
+// the header, they do so right behind it, as for nifti_clib.
+std::int64_t behind_header(const Header& header, std::int64_t offset, std::vector<std::string>& notes) {
+    const auto size = std::int64_t(header.size);
+    if (offset < size)
+        notes.push_back(fmt::format(
+            "its voxels would begin at byte {}, within its header: they are taken from byte {} on", offset,
+            size));
+    return std::max<std::int64_t>(offset - size, 0);
+}
+
 // The other file of a pair: the same name with another ending, with .gz behind it or not.
 std::filesystem::path partner(const std::filesystem::path& path, std::string ending) {
     std::filesystem::path stem = path;
@@ -315,7 +329,7 @@ Reading read_nifti(const std::filesystem::path& path) {
 
     Layout layout = layout_of(header, reading.grid.count(), reading.notes, headed);
     if (header.form == Form::one_file) {
-        layout.skipped_bytes = std::max<std::int64_t>(layout.skipped_bytes - std::int64_t(header.size), 0);
+        layout.skipped_bytes = behind_header(header, layout.skipped_bytes, reading.notes);
         reading.values = read_voxels(*in, layout, headed);
     } else {
         const std::filesystem::path data = image ? path : partner(path, ".img");

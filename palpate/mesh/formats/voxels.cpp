@@ -121,6 +121,9 @@ std::unique_ptr<std::istream> open_file(const std::filesystem::path& path) {
 }
 
 void refuse_start(std::string_view format, const std::filesystem::path& path) {
+    std::error_code unreadable;
+    if (std::filesystem::file_size(path, unreadable) == 0)
+        refuse(fmt::format("no {} header (the file is empty)", format), path, "get the file again");
     const auto bytes = first_bytes(path);
     const std::string start(bytes.begin(), bytes.end());
     for (const auto& [mark, packing] : {std::pair("PK\3\4", "zip"),
@@ -256,7 +259,12 @@ std::vector<float> read_voxels(const std::vector<std::filesystem::path>& files, 
     const bool packed = layout.packing == Packing::gzip || layout.packing == Packing::bzip2;
     Voxels voxels(layout);
     for (const auto& file : files)
-        if (!voxels.full()) voxels.take(packed ? *open_packed(file) : *open_file(file), file);
+        if (!voxels.full()) {
+            if (!std::filesystem::exists(file))
+                refuse("no file " + in_quotes(file.string(), 200) + ", which is named", path,
+                       "put it there, or correct the name");
+            voxels.take(packed ? *open_packed(file) : *open_file(file), file);
+        }
     return std::move(voxels).values();
 }
 
