@@ -20,6 +20,13 @@ namespace {
     throw Error(std::string(what) + " (" + std::strerror(errno) + ")", path.string(), remedy);
 }
 
+// A pipe or a device, which is written to and never replaced.
+bool is_special(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored) &&
+           !std::filesystem::is_directory(path, ignored);
+}
+
 struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -71,6 +78,8 @@ std::string read_text(const std::filesystem::path& path) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error))
         throw Error("a folder where a file was expected", path.string(), "name a file");
+    if (is_special(path))  // to open a pipe is to wait for whoever fills it
+        throw Error("a pipe or a device where a file was expected", path.string(), "save it as a file first");
     std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
     if (!file) fail("cannot open", path, "check the name and that it may be read");
     std::string text;
@@ -94,13 +103,6 @@ std::filesystem::path destination(const std::filesystem::path& name) {
     const std::filesystem::path path = std::filesystem::canonical(name, error);
     if (error) throw Error("a link that leads nowhere", name.string(), "remove it, or name another file");
     return path;
-}
-
-// A pipe or a device, which is written to and never replaced.
-bool is_special(const std::filesystem::path& path) {
-    std::error_code ignored;
-    return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored) &&
-           !std::filesystem::is_directory(path, ignored);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// The whole text of a file. Throws Error if it cannot be read.
+/// The whole text of a file. Throws Error if it cannot be read, or is a pipe or a device.
 std::string read_text(const std::filesystem::path& path);
 
 /// A file on its way: filled under another name beside its own (a rename across disks would be a copy), and

@@ -30,6 +30,7 @@ constexpr Format own_formats[] = {{".ply", read_ply},  {".obj", read_obj},   {".
 // What stands at the beginning of a file that is no mesh at all, whatever its name says.
 struct Stranger {
     std::string_view start, what, remedy;
+    std::size_t at = 0;  // where it stands
 };
 
 constexpr Stranger strangers[] = {
@@ -37,6 +38,12 @@ constexpr Stranger strangers[] = {
     {"<!DOCTYPE html", "a web page, not a mesh,", "download the file itself"},
     {"<!doctype html", "a web page, not a mesh,", "download the file itself"},
     {"<html", "a web page, not a mesh,", "download the file itself"},
+    {"NRRD000", "an NRRD volume, not a mesh,", "name it .nrrd"},
+    {"ObjectType = Image", "a MetaImage volume, not a mesh,", "name it .mha or .mhd"},
+    {std::string_view("n+1\0", 4), "a NIfTI volume, not a mesh,", "name it .nii", 344},
+    {std::string_view("n+2\0", 4), "a NIfTI volume, not a mesh,", "name it .nii", 4},
+    {"DICM", "a DICOM file, not a mesh,", "name it .dcm", 128},
+    {"ISO-10303-21", "a STEP file, which has no triangles,", "export it as .stl"},
     {"BZh", "a file packed by bzip2", "unpack it first"},
     {"\xfd"
      "7zXZ",
@@ -48,13 +55,6 @@ constexpr Stranger strangers[] = {
 constexpr std::string_view zip = "PK\3\4", gzip = "\x1f\x8b";
 constexpr std::string_view zipped_formats[] = {".3mf", ".3d", ".zae", ".q3o", ".pk3"};
 
-void refuse_strangers(std::string_view bytes, const std::string& format, const std::string& name) {
-    for (const Stranger& stranger : strangers)
-        if (bytes.starts_with(stranger.start)) throw Error(stranger.what, name, stranger.remedy);
-    if (bytes.starts_with(zip) && std::ranges::count(zipped_formats, format) == 0)
-        throw Error("a ZIP archive", name, "unpack it first");
-}
-
 const Format* own_format(std::string_view ending) {
     const auto found = std::ranges::find(own_formats, ending, &Format::ending);
     return found == std::end(own_formats) ? nullptr : found;
@@ -62,19 +62,48 @@ const Format* own_format(std::string_view ending) {
 
 // First bytes that leave no doubt, whatever the name ends with.
 constexpr std::pair<std::string_view, std::string_view> signs[] = {
-    {"glTF", ".glb"}, {"ply\n", ".ply"}, {"ply\r", ".ply"}, {"#VRML V", ".wrl"}, {"#X3D V", ".x3dv"}};
+    {"glTF", ".glb"},    {"ply\n", ".ply"}, {"ply\r", ".ply"}, {"#VRML V", ".wrl"},
+    {"#X3D V", ".x3dv"}, {"OFF\n", ".off"}, {"OFF\r", ".off"}};
+
+// The same of a beginning that others may have, too: by a word that stands soon behind it.
+struct Sign {
+    std::string_view start, soon, ending;
+};
+constexpr Sign longer_signs[] = {{"solid", "facet normal", ".stl"},
+                                 {"<?xml", "<X3D", ".x3d"},
+                                 {"PK\3\4", "[Content_Types].xml", ".3mf"},
+                                 {"{", "\"asset\"", ".gltf"}};
+
+// The ending that a file should have by its first bytes; nothing where they may be of any format.
+std::string_view ending_by(std::string_view bytes) {
+    for (const auto& [start, ending] : signs)
+        if (bytes.starts_with(start)) return ending;
+    for (const auto& [start, soon, ending] : longer_signs)
+        if (bytes.starts_with(start) && bytes.substr(0, 1000).find(soon) != std::string_view::npos)
+            return ending;
+    return {};
+}
+
+void refuse_strangers(std::string_view bytes, const std::string& format, const std::string& name) {
+    if (bytes.empty()) throw Error("an empty file", name, "get the file again");
+    for (const Stranger& stranger : strangers)
+        if (bytes.substr(std::min(stranger.at, bytes.size())).starts_with(stranger.start))
+            throw Error(stranger.what, name, stranger.remedy);
+    if (bytes.starts_with(zip) && ending_by(bytes) != ".3mf" &&
+        std::ranges::count(zipped_formats, format) == 0)
+        throw Error("a ZIP archive", name, "unpack it first");
+}
 
 Draft read_draft(const Source& source, const std::string& format) {
     refuse_strangers(source.whole(), format, source.name());
     const Format* const named = own_format(format);
-    for (const auto& [start, ending] : signs) {
-        const Format* const meant = own_format(ending);
-        if (!source.whole().starts_with(start) || (named && named->read == meant->read)) continue;
-        Draft draft = meant->read(source);
-        draft.notes.push_back(fmt::format("read as {}, which it is by its first bytes", ending));
-        return draft;
-    }
-    return named ? named->read(source) : read_with_assimp(source);
+    const std::string_view ending = ending_by(source.whole());
+    const Format* const meant = own_format(ending);
+    if (!meant || (named && named->read == meant->read))
+        return named ? named->read(source) : read_with_assimp(source);
+    Draft draft = meant->read(source);
+    draft.notes.push_back(fmt::format("read as {}, which it is by its first bytes", ending));
+    return draft;
 }
 
 bool is_known(const std::string& format) { return own_format(format) || assimp_knows(format); }
@@ -85,9 +114,12 @@ std::string format_of(const std::filesystem::path& path) {
 }
 
 void check_format(const std::string& format, const std::string& name) {
-    if (!is_known(format))
-        throw Error("cannot read the mesh format " + in_quotes(format), name,
-                    "use .ply, .obj, .stl, .off, .gltf, .glb, .3mf, .x3d or .wrl");
+    if (is_known(format)) return;
+    throw Error(format.empty() ? "no ending that tells the format"
+                               : "cannot read the mesh format " + in_quotes(format),
+                name,
+                "use .ply, .obj, .stl, .off, .gltf, .glb, .3mf, .x3d or .wrl for a mesh, and .nii, .nrrd, "
+                ".mha, .mhd or DICOM for a volume");
 }
 
 [[noreturn]] void out_of_memory(const std::string& name) {
@@ -123,6 +155,8 @@ bool is_mesh(const std::filesystem::path& path) { return is_known(format_of(path
 Mesh read_mesh(const std::filesystem::path& path, std::optional<Units> units,
                std::vector<std::string>* notes) {
     const std::string format = format_of(path);
+    if (std::error_code unreadable; !std::filesystem::exists(path, unreadable))
+        throw Error("cannot find the file", path.string(), "check the name and that it may be read");
     check_format(format, path.string());
     try {
         std::string bytes = read_text(path);

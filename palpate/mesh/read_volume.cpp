@@ -111,6 +111,9 @@ const Format* format_of(const std::filesystem::path& path) {
 
 Reading read_anywhere(const std::filesystem::path& path) {
     const Format* format = format_of(path);
+    if (std::error_code unreadable; std::filesystem::is_regular_file(path, unreadable) &&
+                                    std::filesystem::file_size(path, unreadable) == 0)
+        refuse("an empty file", path, "get the file again");
     if (format && std::filesystem::is_directory(path))
         refuse("a folder where a file was expected", path, "name a file");
     if (format) return format->read(path);

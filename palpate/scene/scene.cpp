@@ -56,6 +56,9 @@ std::string remedy_for_missing(const std::string& name, const std::filesystem::p
 
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder) {
     if (const auto path = find(name, folder)) return *path;
+    std::error_code unreadable;
+    if (std::filesystem::exists(folder / name, unreadable))
+        throw Error("a folder, a pipe or a device where a file was expected", name, "name a file");
     throw Error("cannot find the file", name, remedy_for_missing(name, folder));
 }
 

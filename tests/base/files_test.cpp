@@ -4,6 +4,7 @@
 #include "tests/scratch.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -80,6 +81,18 @@ TEST(Files, LinksAndDevicesStayWhatTheyAre) {
     std::filesystem::create_symlink(scratch / "gone", scratch / "dangling");
     EXPECT_THROW(write_text(scratch / "dangling", "x"), Error);
     EXPECT_EQ(scratch.entries(), 4u);
+}
+
+TEST(Files, APipeIsRefusedAndNotWaitedFor) {
+    Scratch scratch;
+    ASSERT_EQ(mkfifo((scratch / "pipe").c_str(), 0600), 0);
+    try {
+        read_text(scratch / "pipe");
+        ADD_FAILURE() << "read";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("a pipe or a device where a file was expected"),
+                  std::string::npos);
+    }
 }
 
 TEST(Files, MissingPlacesAreNamed) {

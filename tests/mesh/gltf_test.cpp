@@ -474,6 +474,34 @@ TEST(Gltf, TheSceneThatTheFileShows) {
     expect_box(file.read(), vec3(0), vec3(2, 3, 5), 30);
 }
 
+TEST(Gltf, NodesThatAreNotVisibleAreLeftOut) {
+    Making file = a_brick();
+    file.json["extensionsRequired"] = {"KHR_node_visibility"};
+    file.json["nodes"] = {{{"mesh", 0}}, {{"children", {2}}}, {{"mesh", 0}, {"translation", {10, 0, 0}}}};
+    file.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = false;
+    file.json["scenes"] = {{{"nodes", {0, 1}}}};
+    std::vector<std::string> notes;
+    expect_box(file.read(&notes), vec3(0), vec3(2, 3, 5), 30);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_HAS(notes[0], "left out 1 nodes that are not visible");
+}
+
+TEST(Gltf, ASceneWithoutAMeshGivesWayToOneThatHasSome) {
+    Making file = a_brick();
+    file.json["nodes"] = {{{"mesh", 0}}};
+    file.json.erase("scene");
+    file.json["scenes"] = {{{"name", "nothing"}}, {{"nodes", {0}}}};
+    std::vector<std::string> notes;
+    expect_box(file.read(&notes), vec3(0), vec3(2, 3, 5), 30);
+    ASSERT_FALSE(notes.empty());
+    EXPECT_HAS(notes[0], "read scene 1, counted from 0");
+    file.json["scenes"] = {{{"name", "nothing"}}};
+    notes.clear();
+    expect_box(file.read(&notes), vec3(0), vec3(2, 3, 5), 30);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_HAS(notes[0], "read all nodes, because no scene has a mesh");
+}
+
 TEST(Gltf, FarAwayToTheLastDigit) {
     Making file = a_brick(1e-3f);
     file.node()["translation"] = {4e6, 1e6, -2e6};  // as on the Earth

@@ -172,7 +172,7 @@ TEST(ReadHeaded, RefusesLies) {
     EXPECT_NE(volume_error(path, changed(whole, "raw", "bzip2")), "no error");
     EXPECT_HAS(volume_error(path, std::string(1000, 'x')), "no NRRD header");
     EXPECT_HAS(volume_error(path, std::string(1000, '\0')), "no NRRD header");
-    EXPECT_HAS(volume_error(path, ""), "no NRRD header");
+    EXPECT_HAS(volume_error(path, ""), "an empty file");
     EXPECT_NE(volume_error(path, changed(nrrd("uchar", "raw"), "\n\n", "")), "no error");
     EXPECT_HAS(volume_error(path, "NRRD0004\n" + std::string(2 << 20, 'x')), "without an end");
 
@@ -184,7 +184,7 @@ TEST(ReadHeaded, RefusesLies) {
     EXPECT_NE(volume_error(meta, changed(image, "NDims = 3", "NDims = 7")), "no error");
     EXPECT_HAS(volume_error(meta, changed(image, "MET_UCHAR", "MET_UCHAR\nElementNumberOfChannels = 3")),
                "numbers a voxel");
-    EXPECT_HAS(volume_error(meta, ""), "no MetaImage header");
+    EXPECT_HAS(volume_error(meta, ""), "an empty file");
     EXPECT_HAS(volume_error(meta, std::string(1000, '\0')), "no MetaImage header");
 }
 

@@ -370,6 +370,41 @@ TEST(ReadMesh, WhatAFileIsStandsInItsBytes) {
             EXPECT_HAS(parse_error(name, start), what) << name;
 }
 
+TEST(ReadMesh, WhatIsWrongIsNamedFirst) {
+    Scratch scratch;
+    const auto error = [](const std::filesystem::path& path) {
+        return error_of(path, [&] { read_mesh(path, Units::metres); });
+    };
+    EXPECT_HAS(error(scratch / "gone"), "cannot find the file");
+    EXPECT_HAS(error(scratch / "gone.stl"), "cannot find the file");
+    EXPECT_HAS(mesh_error(scratch / "plain", "x"), "no ending that tells the format");
+    EXPECT_HAS(mesh_error(scratch / "a.vti", "x"), ".nii, .nrrd");
+    for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off", "a.glb", "a.3mf", "a.x3d", "a.wrl", "a.fbx"})
+        EXPECT_HAS(parse_error(name, ""), "an empty file") << name;
+}
+
+TEST(ReadMesh, ContentOfAnotherKindIsNamed) {
+    std::string nifti(352, '\0'), dicom(132, '\0');
+    nifti.replace(344, 3, "n+1");
+    dicom.replace(128, 4, "DICM");
+    for (const char* name : {"a.stl", "a.obj", "a.fbx"}) {
+        EXPECT_HAS(parse_error(name, nifti), "a NIfTI volume") << name;
+        EXPECT_HAS(parse_error(name, dicom), "a DICOM file") << name;
+        EXPECT_HAS(parse_error(name, "NRRD0004\ntype: float\n"), "an NRRD volume") << name;
+    }
+    const std::string words =
+        "A text that tells of a mesh, at some length, and is none. It goes on and on, so that "
+        "eighty-four bytes are there.";
+    EXPECT_HAS(parse_error("a.stl", words), "a text that is no STL");
+    std::vector<std::string> notes;
+    const char* const stl =
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+        "endfacet\nendsolid a\n";
+    EXPECT_EQ(parse_mesh(stl, "a.obj", Units::metres, &notes).triangles.size(), 1u);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_HAS(notes[0], "read as .stl");
+}
+
 TEST(ReadMesh, AGzipReadsAsWhatIsInIt) {
     Scratch scratch;
     const Mesh mesh = odd_mesh(500, true);

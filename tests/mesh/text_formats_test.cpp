@@ -210,6 +210,34 @@ TEST(Obj, WhatBearsOnNoShapeCostsNone) {
     EXPECT_EQ(parse("a.obj", "v 0 0 0\nv 1.5D+00 0 0\nv 0 1d-1 0\nf 1 2 3\n").positions[1], vec3(1.5f, 0, 0));
 }
 
+TEST(Obj, AnyEndOfALine) {
+    const std::string points = rows_of(brick.positions, "v "), faces = rows_of(brick.triangles, 1, "f");
+    expect_brick("a.obj", old_macintosh(points + faces) + "\n");
+    expect_brick("a.obj", old_macintosh(points) + faces);
+    EXPECT_HAS(parse_error("a.off", "OFF\r\n3 1 0\r0 0 0\n1 0 0\r\n0 1 0\r\n3 0 1 3\n"), "in line 6");
+}
+
+TEST(Obj, WhatOnlySomeCornersHaveIsLeftOutWithANote) {
+    const std::string points = rows_of(brick.positions, "v "), faces = rows_of(brick.triangles, 1, "f");
+    const std::string start = points + "vt 0 0\nvn 0 0 1\n";
+    const std::string some = faces.substr(faces.find('\n') + 1);  // all but the first
+    const uvec3 t = brick.triangles[0] + 1u;
+    expect_brick("a.obj", start + fmt::format("f {}/1 {}/1 {}/1\n", t.x, t.y, t.z) + some,
+                 "left the texture coordinates out: some corners have none");
+    expect_brick("a.obj", start + fmt::format("f {}//1 {}//1 {}//1\n", t.x, t.y, t.z) + some,
+                 "left the normals out: some corners have none");
+}
+
+TEST(Obj, ALastFaceThatIsCutOff) {
+    std::vector<std::string> notes;
+    const std::string text = rows_of(brick.positions, "v ") + "f 1 3 4 2\nf 5 6 8";
+    parse("a.obj", text + "\n", &notes);
+    EXPECT_TRUE(notes.empty());
+    parse("a.obj", text, &notes);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_HAS(notes[0], "the last line may be cut off");
+}
+
 // ---- PLY ----
 
 std::string ply_head(const std::string& more = "", int faces = 12, const char* format = "ascii",
@@ -249,6 +277,14 @@ TEST(Ply, AsStrangersWriteIt) {
             }
             expect_brick("a.ply", bytes);
         }
+}
+
+TEST(Ply, TextureCoordinatesOfCornersAreLeftOutWithANote) {
+    std::string head = ply_head();
+    head.replace(head.find("end_header"), 0, "property list uchar float texcoord\n");
+    expect_brick("a.ply",
+                 head + rows_of(brick.positions) + rows_of(brick.triangles, 0, "3", " 6 0 0 1 0 0 1\n"),
+                 "left the texture coordinates out, which the corners of faces have");
 }
 
 TEST(Ply, StripsOfTriangles) {
@@ -408,6 +444,15 @@ TEST(Stl, TextInAnyCapitalsAndSeveralSolids) {
     EXPECT_HAS(parse_error("a.stl", "solid\nendsolid\n"), "no faces");
 }
 
+TEST(Stl, ANameFilledUpWithZeros) {
+    expect_brick("a.stl", stl_text("solid box\n", std::string("solid box\0\0\0\n", 13)));
+}
+
+TEST(Stl, FacetsThatNobodyCounted) {
+    expect_brick("a.stl", stl_of(brick, "", 0), "read the 12 facets that are there");
+    EXPECT_HAS(parse_error("a.stl", stl_of(brick, std::string(80, ' '), 0xffffffffu)), "12 there");
+}
+
 // ---- OFF ----
 
 TEST(Off, EveryHeaderThatTellsOfSurfaces) {
@@ -450,6 +495,16 @@ TEST(Off, WordsInAnyLines) {
     expect_brick("a.off",
                  "STCOFF 8 12 0 " + rows_of(brick.positions, "", " 0.5 1 0 1 1 1 ") + in_a_line(faces));
     EXPECT_HAS(parse_error("a.off", in_a_line("OFF 8 12 0 " + points + faces + "7")), "more numbers");
+}
+
+TEST(Off, ColoursBehindFacesInOtherLinesThanTheVertices) {
+    const std::string colours = " 255 0 0\n";
+    std::string pairs = "OFF\n8 12 0\n", wrapped;
+    for (std::size_t i = 0; i < 8; i += 2)
+        pairs += rows_of({brick.positions[i]}, "", " ") + rows_of({brick.positions[i + 1]});
+    expect_brick("a.off", pairs + rows_of(brick.triangles, 0, "3", colours));
+    for (uvec3 t : brick.triangles) wrapped += fmt::format("3 {}\n{} {}{}", t.x, t.y, t.z, colours);
+    expect_brick("a.off", "OFF 8 12 0 " + rows_of(brick.positions, "", " ") + "\n" + wrapped);
 }
 
 TEST(Off, RefusesTheRest) {

@@ -84,6 +84,29 @@ TEST(ThreeMf, ObjectsInFilesOfTheirOwn) {
     EXPECT_HAS(refused(root), "no \"3D/Objects/part 1.model\" in the archive");
 }
 
+TEST(ThreeMf, SlicesAreNoPartOfAnObject) {
+    const std::string slices =
+        "<s:slicestack xmlns:s='http://schemas.microsoft.com/3dmanufacturing/slice/2015/07' id='9'>"
+        "<s:slice ztop='1'><s:vertices><s:vertex x='90' y='90'/></s:vertices></s:slice></s:slicestack>";
+    expect_brick_of(parse(model(one + slices, built)), 1e-3);
+    expect_brick_of(parse(model(slices + one, built)), 1e-3);
+}
+
+TEST(ThreeMf, PartsThatASlicerTakesOtherwiseAreNoted) {
+    const std::string whole = model(one, built);
+    for (const auto& [name, text] : {std::pair("Metadata/model_settings.config",
+                                               "<config><object id='3'><part id='1' subtype='normal_part'/>"
+                                               "<part id='2' subtype='negative_part'/></object></config>"),
+                                     {"Metadata/Slic3r_PE_model.config",
+                                      "<config><metadata key='volume_type' value='ModelPart'/>"
+                                      "<metadata key='volume_type' value='ParameterModifier'/></config>"}}) {
+        std::vector<std::string> notes;
+        parse_mesh(zipped({{"3D/3dmodel.model", whole}, {name, text}}), "a.3mf", {}, &notes);
+        ASSERT_EQ(notes.size(), 1u) << name;
+        EXPECT_HAS(notes[0], "read 1 parts like the others");
+    }
+}
+
 TEST(ThreeMf, WhatIsLeftOutIsSaid) {
     std::vector<std::string> notes;
     const std::string support =

@@ -253,6 +253,40 @@ TEST(X3d, CrossSectionsAlongASpine) {
         "too many solids");
 }
 
+TEST(X3d, WhatIsNotVisibleIsLeftOutWithANote) {
+    const std::string far = "<Transform translation='10 0 0'>" + shape + "</Transform>";
+    for (const std::string& hidden : {"<Group visible='false'>" + far + "</Group>",
+                                      "<Transform visible='false'>" + shape + "</Transform>",
+                                      "<CADLayer visible='false'>" + far + "</CADLayer>",
+                                      "<CADLayer visible='false true'>" + far + "<Group></Group></CADLayer>",
+                                      "<Shape visible='false'" + shape.substr(6)}) {
+        for (const std::string& scene : {hidden + shape, shape + hidden}) {
+            std::vector<std::string> notes;
+            expect_box(parse(file(scene), &notes), vec3(0), vec3(2, 3, 5), 30);
+            ASSERT_EQ(notes.size(), 1u) << scene;
+            EXPECT_HAS(notes[0], "left out 6 faces that are not visible");
+        }
+        EXPECT_HAS(refused(hidden), "no faces, only 6 faces that are not visible");
+    }
+    // What a layer hides lies between what it shows, and a name in it still stands for its node.
+    expect_box(parse(file("<CADLayer visible='true false true'>" + shape + "<Group DEF='a'>" + shape +
+                          "</Group><Transform translation='0 0 5'><Group USE='a'/>"
+                          "</Transform></CADLayer>")),
+               vec3(0), vec3(2, 3, 10), 60);
+}
+
+TEST(X3d, ShapesUnderNodesThatAreNotReadAreCounted) {
+    const std::string under = "<GeoLocation geoCoords='47 8 0'>" + shape + shape + "</GeoLocation>";
+    std::vector<std::string> notes;
+    expect_box(parse(file(under + shape), &notes), vec3(0), vec3(2, 3, 5), 30);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_HAS(notes[0], "left out 12 faces under GeoLocation, a node that is not read");
+    EXPECT_HAS(refused(under), "no faces, only 12 faces under GeoLocation");
+    EXPECT_HAS(refused("<Shape><IndexedFaceSet coordIndex='0 1 2'><GeoCoordinate point='0 0 0 1 0 0 0 1 0'/>"
+                       "</IndexedFaceSet></Shape>"),
+               "a GeoCoordinate, which is not read");
+}
+
 TEST(X3d, RefusesWhatIsDamaged) {
     EXPECT_HAS(parse_error("a.x3d", "<!DOCTYPE X3D [<!ENTITY a 'aaaa'>]>\n" + file("")), "entities");
     const auto with_attributes = [](const std::string& value) {

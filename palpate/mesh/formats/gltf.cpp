@@ -39,9 +39,9 @@ const Json& extension(const Json& object, std::string_view name) {
 // What extensions a file may require.
 constexpr std::string_view draco = "KHR_draco_mesh_compression", meshopt = "EXT_meshopt_compression",
                            instancing = "EXT_mesh_gpu_instancing",
-                           texture_transform = "KHR_texture_transform";
-constexpr std::string_view understood[] = {draco, meshopt, instancing, texture_transform,
-                                           "KHR_mesh_quantization"};
+                           texture_transform = "KHR_texture_transform", visibility = "KHR_node_visibility";
+constexpr std::string_view understood[] = {
+    draco, meshopt, instancing, texture_transform, visibility, "KHR_mesh_quantization"};
 constexpr std::string_view only_looks[] = {
     "KHR_materials_", "KHR_texture_", "EXT_texture_",   "MSFT_texture_",        "KHR_lights_",
     "EXT_lights_",    "KHR_xmp",      "KHR_animation_", "KHR_techniques_webgl", "KHR_technique_webgl"};
@@ -130,7 +130,13 @@ class Gltf {
         else
             walk(roots());
         if (!has_normals_) draft_.normals.clear();
+        if (!has_uvs_ && !draft_.uvs.empty())
+            draft_.notes.push_back("left the texture coordinates out: some parts have none");
         if (!has_uvs_) draft_.uvs.clear();
+        if (hidden_ > 0)
+            draft_.notes.push_back(fmt::format(
+                "left out {} nodes that are not visible (KHR_node_visibility), with what hangs on them",
+                hidden_));
         if (unfinished_ > 0)
             draft_.notes.push_back(
                 fmt::format("left out {} corners that make no whole triangle", unfinished_));
@@ -492,19 +498,45 @@ class Gltf {
     // What the file shows: the nodes of its scene, or all.
     std::vector<std::size_t> roots() {
         std::vector<std::size_t> found;
+        for (std::size_t i = 0; i < hangs_.size(); ++i)
+            if (!hangs_[i]) found.push_back(i);
         const Json& scenes = list("scenes");
-        if (scenes.empty()) {
-            for (std::size_t i = 0; i < hangs_.size(); ++i)
-                if (!hangs_[i]) found.push_back(i);
+        if (scenes.empty()) return found;
+        std::vector<std::size_t> shown =
+            roots_of(entry("scenes", whole(field(json_, "scene"), "a scene", 0)));
+        for (std::size_t i = 0; i < scenes.size() && !shows_mesh(shown); ++i)
+            if (shown = roots_of(scenes[i]); shows_mesh(shown))
+                draft_.notes.push_back(fmt::format(
+                    "read scene {}, counted from 0, because the one that the file shows has no mesh", i));
+        if (!shows_mesh(shown)) {
+            draft_.notes.push_back("read all nodes, because no scene has a mesh");
             return found;
         }
-        const std::size_t shown = whole(field(json_, "scene"), "a scene", 0);
-        for (const Json& node : list_of(entry("scenes", shown), "nodes"))
-            found.push_back(number_in("nodes", node));
         if (scenes.size() > 1)
             draft_.notes.push_back(
-                fmt::format("left out {} scenes beside the one that the file shows", scenes.size() - 1));
-        return found;
+                fmt::format("left out {} scenes beside the one that is read", scenes.size() - 1));
+        return shown;
+    }
+
+    std::vector<std::size_t> roots_of(const Json& scene) const {
+        std::vector<std::size_t> roots;
+        for (const Json& node : list_of(scene, "nodes")) roots.push_back(number_in("nodes", node));
+        return roots;
+    }
+
+    // Whether a mesh hangs on one of these nodes or below.
+    bool shows_mesh(std::vector<std::size_t> left) const {
+        std::vector<bool> seen(worlds_.size());
+        while (!left.empty()) {
+            const std::size_t i = left.back();
+            left.pop_back();
+            if (seen[i]) continue;
+            seen[i] = true;
+            const Json& node = list("nodes")[i];
+            if (!field(node, "mesh").is_null()) return true;
+            for (const Json& child : list_of(node, "children")) left.push_back(number_in("nodes", child));
+        }
+        return false;
     }
 
     // Adds all meshes on these nodes and below them, in the order in which they stand.
@@ -517,6 +549,10 @@ class Gltf {
             if (seen[i]) continue;
             seen[i] = true;
             const Json& node = list("nodes")[i];
+            if (field(extension(node, visibility), "visible") == Json(false)) {
+                ++hidden_;
+                continue;
+            }
             if (!field(node, "mesh").is_null())
                 for (const Place& instance : instances(node)) add_mesh(node, worlds_[i] * instance);
             const Json& children = list_of(node, "children");
@@ -785,7 +821,7 @@ class Gltf {
     std::vector<Place> worlds_;                                 // of nodes
     std::vector<bool> hangs_;                                   // nodes, on others
     bool has_normals_ = true, has_uvs_ = true;                  // all parts so far
-    std::size_t unfinished_ = 0, uncopied_ = 0;
+    std::size_t unfinished_ = 0, uncopied_ = 0, hidden_ = 0;
     Draft draft_;
 };
 

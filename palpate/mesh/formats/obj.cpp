@@ -54,8 +54,7 @@ class Obj {
             const std::size_t comment = before_comment(last).size(), read = text.size() - source_.rest.size();
             if (comment < last.size())
                 return text.substr(0, std::size_t(last.data() - text.data()) + comment);
-            if (source_.rest.empty() || !(last.ends_with('\\') || last.ends_with("\\\r")))
-                return text.substr(0, read);
+            if (source_.rest.empty() || !last.ends_with('\\')) return text.substr(0, read);
         }
     }
 
@@ -88,11 +87,15 @@ class Obj {
         for (auto corner = word(words, space); !corner.empty(); corner = word(words, space), ++size) {
             corners_.push_back(vertex(until('/', corner)));
             const std::string_view uv = until('/', corner);
+            any_uv_ = any_uv_ || !uv.empty();
+            any_normal_ = any_normal_ || !corner.empty();
             all_uvs_ = all_uvs_ && !uv.empty();
             if (all_uvs_) corner_uvs_.push_back(index(uv, uvs_.size()));
             all_normals_ = all_normals_ && !corner.empty();
             if (all_normals_) corner_normals_.push_back(index(corner, normals_.size()));
         }
+        cut_off_ = source_.rest.empty() && !source_.whole().ends_with('\n') &&
+                   !source_.whole().ends_with('\r') && !sizes_.empty() && size < sizes_.back();
         if (size >= 3) return sizes_.push_back(size);
         ++loose_;
         corners_.resize(corners_.size() - size);
@@ -134,6 +137,12 @@ class Obj {
         for (Index n : corners_)
             if (n >= positions_.size())
                 source_.broken(fmt::format("a face naming vertex {} of {}", n + 1, positions_.size()));
+        if (any_uv_ && !all_uvs_)
+            draft.notes.push_back("left the texture coordinates out: some corners have none");
+        if (any_normal_ && !all_normals_)
+            draft.notes.push_back("left the normals out: some corners have none");
+        if (cut_off_)
+            draft.notes.push_back("the last line may be cut off: a face of fewer corners, without an end");
         draft.loose = loose_;
         if (free_forms_ > 0)
             draft.notes.push_back(fmt::format("left out {} free-form curves and surfaces", free_forms_));
@@ -165,6 +174,8 @@ class Obj {
     std::vector<dvec2> uvs_;
     std::vector<Index> corners_, corner_uvs_, corner_normals_, sizes_;
     bool all_uvs_ = true, all_normals_ = true;  // each corner has one
+    bool any_uv_ = false, any_normal_ = false;  // some corner has one
+    bool cut_off_ = false;                      // the last line may be
     std::size_t loose_ = 0, free_forms_ = 0;    // what is left out
 };
 

@@ -15,12 +15,14 @@ class Off {
         source_.skip_mark();
         if (!spelled(peek())) read_header();  // to begin with the counts is allowed
         const double vertices = count("vertices"), faces = count("faces");
-        read_edges(vertices + faces);
+        read_edges(vertices, vertices + faces);
         for (double i = 0; i < vertices; ++i) {
             draft_.positions.push_back(vector());
             if (normals_) draft_.normals.push_back(vector());
             end_row(more_);
         }
+        // Vertices may share lines where faces do not.
+        rows_are_lines_ = rows_are_lines_ || source_.lines_with_words(faces) >= faces;
         for (double i = 0; i < faces; ++i) {
             const double size = number();
             if (!is_whole(size, 0, 0x7fffffffp0))
@@ -64,17 +66,30 @@ class Off {
     // The number of edges, which nobody keeps right and some leave out: behind the other counts, or alone in
     // a line. Where there are lines enough, each row is one, and may end with colours; where there are not,
     // rows are words.
-    void read_edges(double rows) {
+    void read_edges(double vertices, double rows) {
         Source ahead = source_;
         std::string_view here = before_comment(ahead.line());
         const bool with_counts = !word(here).empty();
-        rows_are_lines_ = ahead.lines_with_words(rows) >= rows;
+        rows_are_lines_ = ahead.lines_with_words(rows) >= rows && each_line_has_a_vertex(ahead, vertices);
         if (with_counts) {
             next();
             if (rows_are_lines_) source_.line();
         } else if (next_line_has_one_word()) {
             next();
         }
+    }
+
+    // Whether so many lines have the numbers of a vertex each.
+    bool each_line_has_a_vertex(Source ahead, double vertices) const {
+        const int least = normals_ ? 6 : 3;
+        for (double i = 0; i < vertices && !ahead.rest.empty();) {
+            std::string_view line = before_comment(ahead.line());
+            int words = 0;
+            while (words < least && !word(line).empty()) ++words;
+            if (words > 0 && words < least) return false;
+            if (words > 0) ++i;
+        }
+        return true;
     }
 
     bool next_line_has_one_word() const {

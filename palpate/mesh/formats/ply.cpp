@@ -133,6 +133,8 @@ class Ply {
             if (found_.contains("vertex_indices")) source_.broken("two lists of the corners of faces");
             place = corners;
             found_.insert("vertex_indices");
+        } else if (of_faces && length && name == "texcoord") {
+            draft_.notes.push_back("left the texture coordinates out, which the corners of faces have");
         } else if (element.name == "vertex" && !length && column != std::end(columns)) {
             place = int(column - columns);
             found_.insert(*column);

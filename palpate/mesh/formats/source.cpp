@@ -33,11 +33,7 @@ std::optional<double> spelled_by_microsoft(std::string_view word) {
 }  // namespace
 
 Source::Source(std::string_view bytes, std::string name, std::filesystem::path folder)
-    : rest(bytes),
-      whole_(bytes),
-      end_of_line_(bytes.find('\n') == std::string_view::npos ? '\r' : '\n'),
-      name_(std::move(name)),
-      folder_(std::move(folder)) {}
+    : rest(bytes), whole_(bytes), name_(std::move(name)), folder_(std::move(folder)) {}
 
 std::optional<std::filesystem::path> Source::beside(std::string_view uri) const {
     if (folder_.empty()) return {};
@@ -61,7 +57,13 @@ double Source::lines_with_words(double most) const {
     return count;
 }
 
-std::string_view Source::line() { return until(end_of_line_, rest); }
+std::string_view Source::line() {
+    const auto end = std::ranges::find_if(rest, [](char c) { return c == '\n' || c == '\r'; });
+    const std::string_view taken = rest.substr(0, std::size_t(end - rest.begin()));
+    rest.remove_prefix(taken.size());
+    rest.remove_prefix(rest.starts_with("\r\n") ? 2 : rest.empty() ? 0 : 1);
+    return taken;
+}
 
 void Source::skip_mark() {
     if (rest.starts_with("\xff\xfe") || rest.starts_with("\xfe\xff"))
@@ -74,9 +76,9 @@ void Source::broken(std::string_view what, std::string_view remedy) const {
 }
 
 void Source::broken_here(std::string_view what) const {
-    const auto read = whole_.substr(0, whole_.size() - rest.size());
-    const auto lines =
-        std::count(read.begin(), read.end(), end_of_line_) + (read.ends_with(end_of_line_) ? 0 : 1);
+    Source read(whole_.substr(0, whole_.size() - rest.size()), name_);
+    std::size_t lines = 0;
+    for (; !read.rest.empty(); read.line()) ++lines;
     broken(fmt::format("{} in line {}", what, lines));
 }
 

@@ -25,7 +25,7 @@ class Source {
     /// Skips the mark with which an UTF-8 text may begin. Throws Error if the text is UTF-16.
     void skip_mark();
 
-    /// Takes off the next line, or what is left of one, with its end.
+    /// Takes off the next line, or what is left of one, with its end: \n, \r\n or \r.
     std::string_view line();
 
     /// How many of the lines to come have a word that is no comment (#). Stops counting at `most`.
@@ -44,7 +44,6 @@ class Source {
 
  private:
     std::string_view whole_;
-    char end_of_line_;
     std::string name_;
     std::filesystem::path folder_;
 };

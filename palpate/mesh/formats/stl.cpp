@@ -38,20 +38,35 @@ std::size_t place_of(std::string_view what, std::string_view text) {
     return found == text.end() ? std::string_view::npos : std::size_t(found - text.begin());
 }
 
-// A text has no zeros, of which a binary file has some in the number of its facets.
+// A text has no zeros, of which a binary file has some in the number of its facets; but some programs fill up
+// the name in its first line with them.
 bool is_text(std::string_view bytes) {
     const auto has = [&](std::string_view what) { return place_of(what, bytes) != std::string_view::npos; };
-    return bytes.substr(0, 1000).find('\0') == std::string_view::npos && (has("facet") || has("endsolid"));
+    const std::size_t first_line = bytes.substr(0, 200).find_first_of("\r\n");
+    const bool named = bytes.starts_with("solid") && first_line != std::string_view::npos;
+    return bytes.substr(named ? first_line : 0, 1000).find('\0') == std::string_view::npos &&
+           (has("facet") || has("endsolid"));
+}
+
+bool is_plain_text(std::string_view bytes) {
+    return std::ranges::all_of(bytes, [](unsigned char c) { return c >= ' ' || std::isspace(c); });
 }
 
 Draft read_binary(const Source& source) {
     const std::string_view bytes = source.whole();
     if (bytes.size() < counted) source.broken("neither a text nor a binary STL");
-    const std::size_t count = promised(bytes), there = (bytes.size() - counted) / facet;
+    const std::size_t there = (bytes.size() - counted) / facet;
+    const bool uncounted = promised(bytes) == 0 && there > 0 && bytes.size() == counted + facet * there;
+    const std::size_t count = uncounted ? there : promised(bytes);
+    if (count > there && is_plain_text(bytes.substr(0, 1000)))
+        source.broken("a text that is no STL", "give it the ending of its format");
     if (count > there) source.broken(fmt::format("{} facets promised and {} there", count, there));
     if (count > std::numeric_limits<Index>::max() / 3) source.broken("too many facets");
     Draft draft;
     draft.single = true;
+    if (uncounted)
+        draft.notes.push_back(
+            fmt::format("read the {} facets that are there: the file says it has none", there));
     if (const std::size_t left = bytes.size() - counted - count * facet; left >= facet)
         draft.notes.push_back(
             fmt::format("left out {} bytes behind the {} facets that the file says it has", left, count));

@@ -100,6 +100,7 @@ class ThreeMf {
             named_.erase(named_.begin());
             read_model(next);
         }
+        tell_of_modifiers();
         if (build_.empty()) build_all();
         for (const Part& item : build_) add(item.object, item.place, 0);
         if (supports_ > 0)
@@ -142,7 +143,8 @@ class ThreeMf {
         const std::string text = unpack(file);
         const Source source(text, source_.name());
         Object* object = nullptr;
-        read_xml(source, [&](const XmlElement& element) {
+        bool in_mesh = false;  // other extensions have vertices, too
+        const auto begins = [&](const XmlElement& element) {
             const auto bad = [&](std::string_view what) {
                 source_.broken(fmt::format("{} in line {} of {}", what, element.line, in_quotes(file)));
             };
@@ -168,9 +170,11 @@ class ThreeMf {
                 build_.push_back(part(element["path"], element["objectid"]));
             } else if (!object) {
                 return true;
-            } else if (element.name == "vertex") {
+            } else if (element.name == "mesh") {
+                in_mesh = true;
+            } else if (element.name == "vertex" && in_mesh) {
                 object->positions.push_back({number("x"), number("y"), number("z")});
-            } else if (element.name == "triangle") {
+            } else if (element.name == "triangle" && in_mesh) {
                 dvec3 corners(number("v1"), number("v2"), number("v3"));
                 for (int k = 0; k < 3; ++k)
                     if (!is_whole(corners[k], 0, double(object->positions.size()) - 1))
@@ -183,7 +187,31 @@ class ThreeMf {
                 ++beams_;
             }
             return true;
+        };
+        read_xml(source, begins, [&](std::string_view name) {
+            if (name == "object") object = nullptr;
+            if (name == "mesh" || name == "object") in_mesh = false;
         });
+    }
+
+    // Slicers say in files of their own what is no body but changes one, or how it is printed.
+    void tell_of_modifiers() {
+        std::size_t modifiers = 0;
+        for (const char* settings : {"Metadata/model_settings.config", "Metadata/Slic3r_PE_model.config"}) {
+            if (!archive_.has(settings)) continue;
+            const std::string text = unpack(settings);
+            read_xml(Source(text, source_.name()), [&](const XmlElement& element) {
+                const std::string_view type = element["key"] == "volume_type" ? element["value"] : "",
+                                       part = element["subtype"];
+                modifiers +=
+                    (!part.empty() && part != "normal_part") || (!type.empty() && type != "ModelPart");
+                return true;
+            });
+        }
+        if (modifiers > 0)
+            draft_.notes.push_back(fmt::format(
+                "read {} parts like the others, which the slicer takes as negative or as modifiers",
+                modifiers));
     }
 
     static std::string without_slash(std::string_view path) {

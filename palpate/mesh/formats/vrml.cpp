@@ -112,11 +112,15 @@ class Vrml {
     }
 
     void tell_of_others() {
-        if (others_.empty()) return;
-        std::string left_out = "shapes that are not read:";
-        for (std::string_view other : others_) left_out += ' ' + std::string(other);
-        if (draft_.sizes.empty()) source_.broken("no faces, only " + left_out, "convert it to triangles");
-        draft_.notes.push_back("left out " + left_out);
+        std::vector<std::string> left_out;
+        if (!others_.empty())
+            left_out.push_back(fmt::format("shapes that are not read: {}", fmt::join(others_, " ")));
+        for (const auto& [node, faces] : under_)
+            left_out.push_back(fmt::format("{} faces under {}, a node that is not read", faces, node));
+        if (hidden_ > 0) left_out.push_back(fmt::format("{} faces that are not visible", hidden_));
+        if (draft_.sizes.empty() && !left_out.empty())
+            source_.broken("no faces, only " + left_out[0], "convert it to triangles");
+        for (const std::string& what : left_out) draft_.notes.push_back("left out " + what);
     }
 
     // They are kept where all parts have them.
@@ -125,7 +129,10 @@ class Vrml {
             draft_.notes.push_back(fmt::format(
                 "left the texture coordinates out: {} corners name ones that are not there", astray_));
         const auto missing = [](dvec2 uv) { return std::isnan(uv.x); };
-        if (astray_ > 0 || std::ranges::any_of(draft_.uvs, missing)) draft_.uvs.clear();
+        const auto without = std::ranges::count_if(draft_.uvs, missing);
+        if (astray_ == 0 && without > 0 && without < std::ssize(draft_.uvs))
+            draft_.notes.push_back("left the texture coordinates out: some parts have none");
+        if (astray_ > 0 || without > 0) draft_.uvs.clear();
     }
 
     // --- words ---
@@ -167,7 +174,7 @@ class Vrml {
     // --- values ---
 
     static bool is_plain(std::string_view word) {
-        return word == "TRUE" || word == "FALSE" || word == "NULL" ||
+        return word == "TRUE" || word == "FALSE" || word == "true" || word == "false" || word == "NULL" ||
                (!word.empty() && std::string_view("0123456789+-.\"").find(word[0]) != std::string_view::npos);
     }
 
@@ -202,13 +209,22 @@ class Vrml {
         return word != "FALSE" && word != "false";
     }
 
+    // One, or one for each of several.
+    std::vector<bool> truths() {
+        if (!take("[")) return {truth()};
+        std::vector<bool> found;
+        while (!take("]")) found.push_back(truth());
+        return found;
+    }
+
     dvec3 vector() {
         const auto [x, y, z] = just<3>();
         return {x, y, z};
     }
 
     // Whatever an unknown field holds. Its nodes are read, because they may have names, and left out again.
-    void skip_value() {
+    // Returns how many faces they had.
+    std::size_t skip_value() {
         const Mark before = mark();
         if (take("["))
             while (!take("]")) skip_one();
@@ -216,7 +232,7 @@ class Vrml {
             while (is_plain(ahead())) next();
         else if (begins_node())
             skip_one();
-        keep(before, before, before);
+        return remove(before, mark());
     }
 
     void skip_one() {
@@ -311,16 +327,23 @@ class Vrml {
         if (type == "Extrusion") return read_extrusion();
         if (is_in(groups, type) || is_in(transforms, type)) return read_group(type);
         if (is_geometry) others_.insert(type);
+        if (type == "GeoCoordinate")
+            source_.broken("a GeoCoordinate, which is not read,", "convert it to a Coordinate");
         const bool is_texture = type == "TextureCoordinate";
+        const Mark start = mark();
+        std::vector<bool> visible;
         read_fields([&](std::string_view field) {
             if (type == "Shape" && field == "geometry")
                 in_geometry_ = true, node(), in_geometry_ = false;
             else if (field == "point" && (is_texture || type == "Coordinate" || type == "CoordinateDouble"))
                 (is_texture ? uvs_ : points_) = numbers();
-            else
-                return false;
+            else if (type == "Shape" && field == "visible")
+                visible = truths();
+            else if (const std::size_t faces = skip_value(); faces > 0)
+                under_[type] += faces;
             return true;
         });
+        if (visible == std::vector{false}) hidden_ += remove(start, mark());
     }
 
     // `known` reads the fields that it knows, and says so.
@@ -541,6 +564,7 @@ class Vrml {
         const Mark start = mark();
         std::vector<Mark> ends;  // of each child
         double choice = type == "LOD" ? 0 : -1;
+        std::vector<bool> visible;  // of a CADLayer for each child, else one for all
         read_fields([&](std::string_view field) {
             if (is_in(child_fields, field)) {
                 const auto child = [&] { node(), ends.push_back(mark()); };
@@ -560,34 +584,42 @@ class Vrml {
                 placement.translation = vector();
             } else if (field == "whichChoice") {
                 choice = just<1>()[0];
+            } else if (field == "visible") {
+                visible = truths();
             } else {
                 return false;
             }
             return true;
         });
         if (is_in(transforms, type)) place(start, placement);
-        if (type != "Switch" && type != "LOD") return;
+        if (type == "CADLayer")
+            for (std::size_t i = std::min(visible.size(), ends.size()); i-- > 0;)
+                hidden_ += visible[i] ? 0 : remove(i > 0 ? ends[i - 1] : start, ends[i]);
+        else if (visible == std::vector{false})
+            hidden_ += remove(start, mark());
+        if ((type != "Switch" && type != "LOD") || visible == std::vector{false}) return;
         const bool any = is_whole(choice, 0, double(ends.size()) - 1);
         const auto chosen = any ? std::size_t(choice) : 0;
-        keep(any && chosen > 0 ? ends[chosen - 1] : start, any ? ends[chosen] : start, start);
+        remove(any ? ends[chosen] : start, mark());
+        if (chosen > 0) remove(start, ends[chosen - 1]);
     }
 
     // --- what has been read ---
 
     Mark mark() const { return {draft_.positions.size(), draft_.corners.size(), draft_.sizes.size()}; }
 
-    // Of all that came after `start` only what lies between two marks.
-    void keep(Mark from, Mark to, Mark start) {
-        auto cut = [](auto& list, std::size_t a, std::size_t b, std::size_t first) {
-            list.resize(b);
-            list.erase(list.begin() + std::ptrdiff_t(first), list.begin() + std::ptrdiff_t(a));
+    // Takes out what lies between two marks. Returns how many faces that were.
+    std::size_t remove(Mark from, Mark to) {
+        auto cut = [](auto& list, std::size_t a, std::size_t b) {
+            list.erase(list.begin() + std::ptrdiff_t(a), list.begin() + std::ptrdiff_t(b));
         };
-        cut(draft_.positions, from.positions, to.positions, start.positions);
-        cut(draft_.uvs, from.positions, to.positions, start.positions);  // as many
-        cut(draft_.corners, from.corners, to.corners, start.corners);
-        cut(draft_.sizes, from.sizes, to.sizes, start.sizes);
-        for (std::size_t i = start.corners; i < draft_.corners.size(); ++i)
-            draft_.corners[i] -= Index(from.positions - start.positions);
+        cut(draft_.positions, from.positions, to.positions);
+        cut(draft_.uvs, from.positions, to.positions);  // as many
+        cut(draft_.corners, from.corners, to.corners);
+        cut(draft_.sizes, from.sizes, to.sizes);
+        for (std::size_t i = from.corners; i < draft_.corners.size(); ++i)
+            draft_.corners[i] -= Index(to.positions - from.positions);
+        return to.sizes - from.sizes;
     }
 
     void turn_over(Mark start) {
@@ -617,7 +649,9 @@ class Vrml {
     std::size_t astray_ = 0;                                                  // corners without their texture
     Numbers points_, uvs_;                                                    // of the last Coordinates
     std::map<std::string_view, std::map<std::size_t, std::size_t>> defined_;  // where nodes end and begin
-    std::set<std::string_view> others_;  // kinds of shapes that are left out
+    std::set<std::string_view> others_;              // kinds of shapes that are left out
+    std::map<std::string_view, std::size_t> under_;  // faces that are left out, by the node that has them
+    std::size_t hidden_ = 0;                         // faces that are left out because they are not visible
 };
 
 }  // namespace

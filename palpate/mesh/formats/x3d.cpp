@@ -13,10 +13,10 @@ namespace {
 
 // The fields that hold numbers, words or lists of them, and that the reader of VRML knows.
 constexpr std::string_view number_fields[] = {
-    "point",      "coordIndex",   "index",       "texCoordIndex", "stripCount",      "fanCount",
-    "center",     "rotation",     "scale",       "height",        "translation",     "size",
-    "xDimension", "zDimension",   "radius",      "bottomRadius",  "xSpacing",        "zSpacing",
-    "spine",      "crossSection", "orientation", "whichChoice",   "scaleOrientation"};
+    "point",      "coordIndex",   "index",       "texCoordIndex", "stripCount",       "fanCount",
+    "center",     "rotation",     "scale",       "height",        "translation",      "size",
+    "xDimension", "zDimension",   "radius",      "bottomRadius",  "xSpacing",         "zSpacing",
+    "spine",      "crossSection", "orientation", "whichChoice",   "scaleOrientation", "visible"};
 constexpr std::string_view truth_fields[] = {"ccw", "side", "top", "bottom", "beginCap", "endCap"};
 
 // In which field of its parent a node stands that does not say so itself.
