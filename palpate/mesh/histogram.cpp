@@ -2,6 +2,8 @@
 
 #include "palpate/base/error.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -71,9 +73,12 @@ Histogram histogram(const Volume& volume, int bins) {
 }
 
 std::vector<float> percentiles(std::vector<float>&& values, std::span<const double> percents) {
-    assert(!values.empty());
+    std::erase_if(values, [](float value) { return std::isnan(value); });
+    if (values.empty()) throw Error("no values", "the percentiles", "give at least one that is a number");
     std::vector<float> found;
     for (const double percent : percents) {
+        if (!(0 <= percent && percent <= 100))
+            throw Error(fmt::format("{} %", percent), "the percentiles", "ask for 0 to 100 %");
         const double rank = std::ceil(percent / 100 * double(values.size()));
         const auto nth = values.begin() + std::ptrdiff_t(std::clamp(rank, 1.0, double(values.size()))) - 1;
         std::nth_element(values.begin(), nth, values.end());

@@ -25,7 +25,8 @@ struct Histogram {
 Histogram histogram(const Volume& volume, int bins = 256);
 
 /// For each of these percents the smallest of the values that at least so many percent of them do not exceed
-/// (the nearest rank): always one of the values. They are taken, because they are put in another order.
+/// (the nearest rank): always one of the values. They are taken, because they are put in another order. NaN
+/// does not count as a value. Throws Error if there is no value, or a percent is not from 0 to 100.
 std::vector<float> percentiles(std::vector<float>&& values, std::span<const double> percents);
 
 /// A value for isosurface() that parts what is dark from what is bright: Otsu's threshold, halfway between

@@ -3,6 +3,8 @@
 #include "palpate/mesh/face_pairs.h"
 #include "palpate/mesh/repair.h"
 
+#include <tbb/parallel_for.h>
+
 #include <array>
 #include <cmath>
 
@@ -112,18 +114,34 @@ Intersections intersections(const Mesh& mesh, std::size_t most) {
     for (Index face : tree.faces) triangles.push_back(triangle(mesh, face));
 
     const std::vector<Tree::Plate> plates = tree.plates();
+    std::vector<uvec2> leaves;  // pairs of them that wait to be looked at, many at once
+    std::vector<std::vector<uvec2>> cuts;
+    auto look_at_leaves = [&] {
+        cuts.resize(leaves.size());
+        tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t i) {
+            for_each_pair_of_faces(tree, leaves[i].x, leaves[i].y, [&](Index a, Index b) {
+                if (cut(triangles[a], triangles[b], touch)) cuts[i].push_back({tree.faces[a], tree.faces[b]});
+            });
+        });
+        for (std::vector<uvec2>& some : cuts) {
+            found.faces.insert(found.faces.end(), some.begin(), some.end());
+            some.clear();
+        }
+        leaves.clear();
+    };
+    constexpr std::size_t at_once = 10'000;
     std::size_t looks = 0;
     const std::size_t most_looks = most_looks_at(mesh);
     found.all = for_each_pair_of_leaves(
         tree, 0, [&](Index a, Index b) { return in_one_plane(plates[a], plates[b], touch); },
         [&](Index a, Index b) {
-            for_each_pair_of_faces(tree, a, b, [&](Index i, Index j) {
-                if (cut(triangles[i], triangles[j], touch))
-                    found.faces.push_back({tree.faces[i], tree.faces[j]});
-            });
+            leaves.push_back({a, b});
             looks += std::size_t(tree.nodes[a].count) * tree.nodes[b].count;
+            if (leaves.size() == at_once) look_at_leaves();
             return looks <= most_looks && found.faces.size() < most;
         });
+    look_at_leaves();
+    found.all &= found.faces.size() < most;
     return found;
 }
 

@@ -13,7 +13,7 @@ struct Intersections {
 
 /// Pairs of faces that cut through each other: a side of one passes through the other, beyond what rounding
 /// in double may have made. Faces that merely touch or lie in one plane do not count, nor do neighbours in
-/// the edge they share. Gives up, and says so, after `most` pairs or after a hundred tests a face, which
+/// the edge they share. Gives up, and says so, after about `most` pairs or a hundred tests a face, which
 /// only great bundles of long thin faces need.
 Intersections intersections(const Mesh& mesh, std::size_t most = 1'000'000);
 

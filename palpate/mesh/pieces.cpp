@@ -8,16 +8,22 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
 
 namespace palpate {
 namespace {
 
-constexpr double touching = 1e-5;     // of the longest side
-constexpr double most_points = 60e3;  // counted in the box around all pieces
-constexpr double least_points = 1e3;  // and in that of any one
+constexpr double touching = 1e-5;  // of the longest side
+// How many points are counted in a piece's box, which go with its volume: so many in the largest, but fewer
+// where that would be too many in all; and so many in the smallest, but fewer where these are many.
+constexpr double most_points = 60e3, most_in_all = 2e6;
+constexpr double least_points = 1e3, least_of_many = 64;
 
 std::vector<std::vector<Index>> faces_by(const std::vector<Index>& group_of_face, Index groups) {
     std::vector<std::vector<Index>> faces(groups);
@@ -74,6 +80,41 @@ bool holds(const Bounds& box, const Bounds& other) {
            glm::all(glm::lessThanEqual(other.high, box.high));
 }
 
+// Boxes by where they start along the axis on which they overlap least.
+class ByStart {
+ public:
+    explicit ByStart(const std::vector<Bounds>& boxes) : boxes_(boxes), order_(boxes.size()) {
+        Bounds all;
+        dvec3 sizes(0);
+        for (const Bounds& box : boxes) {
+            all.include(box.low);
+            all.include(box.high);
+            sizes += dvec3(box.size());
+        }
+        const dvec3 crowd = sizes / glm::max(dvec3(all.size()), std::numeric_limits<double>::min());
+        axis_ = crowd.x <= crowd.y && crowd.x <= crowd.z ? 0 : crowd.y <= crowd.z ? 1 : 2;
+        std::iota(order_.begin(), order_.end(), Index(0));
+        std::sort(order_.begin(), order_.end(), [&](Index a, Index b) { return start(a) < start(b); });
+    }
+
+    std::vector<Index> held_by(Index outer) const {
+        const Bounds& box = boxes_[outer];
+        std::vector<Index> held;
+        auto at = std::partition_point(order_.begin(), order_.end(),
+                                       [&](Index i) { return start(i) < box.low[axis_]; });
+        for (; at != order_.end() && start(*at) <= box.high[axis_]; ++at)
+            if (*at != outer && holds(box, boxes_[*at])) held.push_back(*at);
+        return held;
+    }
+
+ private:
+    float start(Index i) const { return boxes_[i].low[axis_]; }
+
+    const std::vector<Bounds>& boxes_;
+    std::vector<Index> order_;
+    int axis_ = 0;
+};
+
 // Of all parts that wind around a part the smallest says where it lies: in matter if that winds outward, and
 // in a cavity, loose, if inward.
 void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
@@ -85,11 +126,10 @@ void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
     const std::vector<Bounds> box = boxes(mesh, part);
     const std::vector<double> volume = volumes(mesh, part);
     const std::vector<std::vector<Index>> faces = faces_by(part.of, part.count);
+    const ByStart by_start(box);
     std::vector<Around> innermost(part.count);
     for (Index outer = 0; outer < part.count; ++outer) {
-        std::vector<Index> inner;
-        for (Index i = 0; i < part.count; ++i)
-            if (i != outer && holds(box[outer], box[i])) inner.push_back(i);
+        const std::vector<Index> inner = by_start.held_by(outer);
         if (inner.empty()) continue;
         const Tree tree(mesh, faces[outer]);
         const WindingNumber winding(tree);
@@ -104,15 +144,22 @@ void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
         if (innermost[i].outward) groups.unite(innermost[i].part, i);
 }
 
+// How far apart about so many points stand in a box, on its plane if it is thinner than that, or on its line.
+double spacing_of(dvec3 size, double points) {
+    std::sort(&size.x, &size.x + 3);
+    return std::max(
+        {std::cbrt(size.x * size.y * size.z / points), std::sqrt(size.y * size.z / points), size.z / points});
+}
+
 // The volume that faces wind around more than half, m³: of points evenly spread in their box those inside.
-double counted_volume(const Mesh& mesh, const std::vector<Index>& faces, const Bounds& box, double spacing) {
+double counted_volume(const Mesh& mesh, const std::vector<Index>& faces, const Bounds& box, double points) {
     const Tree tree(mesh, faces);
     const WindingNumber winding(tree);
     const dvec3 size = box.size();
-    const ivec3 dims = glm::max(ivec3(glm::ceil(size / spacing)), ivec3(1));
+    const ivec3 dims = glm::max(ivec3(glm::ceil(size / spacing_of(size, points))), ivec3(1));
     const dvec3 step = size / dvec3(dims);
     std::atomic<std::size_t> inside = 0;
-    tbb::parallel_for(0, dims.z * dims.y, [&](int row) {
+    tbb::parallel_for(std::int64_t(0), std::int64_t(dims.z) * dims.y, [&](std::int64_t row) {
         std::size_t in_row = 0;
         for (int x = 0; x < dims.x; ++x)
             in_row += winding.at(dvec3(box.low) + step * (dvec3(x, row % dims.y, row / dims.y) + 0.5)) > 0.5;
@@ -152,26 +199,33 @@ void measure(const Mesh& mesh, const Parts& part, Pieces& found) {
         const dvec3 size = one.size();
         return size.x * size.y * size.z;
     };
-    double largest = 0;
-    for (const Bounds& one : box) largest = std::max(largest, room(one));
+    double largest = 0, all = 0;
+    std::size_t counted = 0;
     for (Index piece = 0; piece < count; ++piece) {
-        if (!count_points[piece] || !(room(box[piece]) > 0)) continue;
-        const double points = std::max(most_points * room(box[piece]) / largest, least_points);
-        found.volume[piece] =
-            counted_volume(mesh, faces[piece], box[piece], std::cbrt(room(box[piece]) / points));
+        largest = std::max(largest, room(box[piece]));
+        if (!count_points[piece]) continue;
+        all += room(box[piece]);
+        ++counted;
     }
+    const double least = std::clamp(most_in_all / double(counted), least_of_many, least_points);
+    tbb::parallel_for(Index(0), count, [&](Index piece) {
+        const double own = room(box[piece]);
+        if (!count_points[piece] || !(own > 0)) return;
+        const double points = std::max(std::min(most_points * own / largest, most_in_all * own / all), least);
+        found.volume[piece] = counted_volume(mesh, faces[piece], box[piece], points);
+    });
 }
 
 }  // namespace
 
 Pieces pieces(const Mesh& mesh, const Parts& part) {
     Groups groups(part.count);
-    if (!unite_touching(mesh, part, groups)) {
-        for (Index i = 1; i < part.count; ++i) groups.unite(0, i);
-    } else {
-        unite_nested(mesh, part, groups);
-    }
     Pieces found;
+    found.all = unite_touching(mesh, part, groups);
+    if (found.all)
+        unite_nested(mesh, part, groups);
+    else
+        for (Index i = 1; i < part.count; ++i) groups.unite(0, i);
     std::vector<Index> number(part.count, none);
     for (Index i = 0; i < part.count; ++i) {
         Index& piece = number[groups.of(i)];
@@ -191,6 +245,7 @@ Dropped keep_largest(Mesh& mesh) {
     Mesh turned{mesh.positions, {}, mesh.triangles};
     turn_parts(turned);
     const Pieces found = pieces(turned, part);
+    if (!found.all) return {.crowded = mesh.triangles.size()};
     if (found.volume.size() < 2) return {};
     const auto largest =
         Index(std::max_element(found.volume.begin(), found.volume.end()) - found.volume.begin());

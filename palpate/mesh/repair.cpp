@@ -28,6 +28,8 @@ struct Steps {
     }
     void add(const std::string& what, const Dropped& went) {
         if (went.parts > 0) add(what, went.parts).volume += went.volume;
+        if (went.crowded > 0)
+            add("faces too crowded to be searched for parts that touch", 0).count = went.crowded;
         dropped += went.volume;
     }
     // Of a surface's area.

@@ -47,9 +47,10 @@ std::string in_words(const Repair& step);
 
 /// Makes a sound solid of any triangles: finite, every edge with two faces that run along it in opposite
 /// ways, and a volume above zero. Returns what changed, in order; a sound mesh stays as it is, to the bit.
-/// Where the walls could not be mended, the step "faces made by voxels, because …" says why. One step changes
-/// nothing: "faces too crowded to be searched for cuts", where thousands of long thin ones lie together, so
-/// that not all pairs that may cut through each other were looked at. Where the mesh is already closed,
+/// Where the walls could not be mended, the step "faces made by voxels, because …" says why. Two steps change
+/// nothing: "faces too crowded to be searched for cuts" and "… for parts that touch", where thousands of long
+/// thin ones lie together, so that not all pairs that may cut through or touch each other were looked at.
+/// Where the mesh is already closed,
 /// vertices that share a place are not welded: they hold apart what would else touch. Drops normals, texture
 /// coordinates and tangents of a mesh it changes. Throws Error if a position is not finite or nothing
 /// encloses a volume: a sheet, a line, a point, a Möbius band. Positions may be of any size, 1e-20 m as well
@@ -64,8 +65,9 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings = {}, cons
 /// What went with the parts that a step dropped.
 struct Dropped {
     std::size_t parts = 0;
-    double volume = 0;  // m³; each part's own, which of an open one is about that of its box's middle
-    double area = 0;    // m²
+    double volume = 0;        // m³; each part's own, which of an open one is about that of its box's middle
+    double area = 0;          // m²
+    std::size_t crowded = 0;  // faces, if too many lay together to search them for parts that touch
 };
 
 /// Makes one vertex of all that lie at the same place; returns how many vertices went.
@@ -98,7 +100,8 @@ std::size_t drop_flat_faces(Mesh& mesh);
 std::size_t drop_unused(Mesh& mesh);
 
 /// Keeps the piece with the largest volume, a piece being parts that touch, overlap or lie in each other,
-/// with the cavities in them (mesh/pieces.h). Parts may be open, and the wrong way out.
+/// with the cavities in them (mesh/pieces.h). Parts may be open, and the wrong way out. Keeps everything
+/// where faces are too crowded to be searched for parts that touch.
 Dropped keep_largest(Mesh& mesh);
 
 /// The same for what need not enclose anything: keeps the connected part with the largest area.

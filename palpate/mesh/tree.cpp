@@ -16,38 +16,49 @@ constexpr Index most_in_a_leaf = 4;
 
 class Halving {
  public:
-    Halving(const Mesh& mesh, Tree& tree) : mesh_(mesh), tree_(tree), middles_(mesh.triangles.size()) {
+    Halving(const Mesh& mesh, Tree& tree) : mesh_(mesh), tree_(tree) {
+        placed_.reserve(tree.faces.size());
         for (Index face : tree.faces) {
             const uvec3 t = mesh.triangles[face];
-            middles_[face] =
-                mesh.positions[t.x] / 3.0f + mesh.positions[t.y] / 3.0f + mesh.positions[t.z] / 3.0f;
+            placed_.push_back(
+                {mesh.positions[t.x] / 3.0f + mesh.positions[t.y] / 3.0f + mesh.positions[t.z] / 3.0f, face});
         }
     }
+
+    void halve_all() {
+        halve(0, Index(placed_.size()));
+        for (std::size_t i = 0; i < placed_.size(); ++i) tree_.faces[i] = placed_[i].face;
+    }
+
+ private:
+    struct Placed {
+        vec3 middle;
+        Index face;
+    };
 
     void halve(Index first, Index count) {
         const std::size_t here = tree_.nodes.size();
         Bounds box, middle;
         for (Index i = first; i < first + count; ++i) {
-            const uvec3 t = mesh_.triangles[tree_.faces[i]];
+            const uvec3 t = mesh_.triangles[placed_[i].face];
             for (int k = 0; k < 3; ++k) box.include(mesh_.positions[t[k]]);
-            middle.include(middles_[tree_.faces[i]]);
+            middle.include(placed_[i].middle);
         }
         tree_.nodes.push_back({box.low, box.high, first, count, 0});
         if (count <= most_in_a_leaf) return;
         const vec3 size = middle.size();
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        const auto begin = tree_.faces.begin() + first;
+        const auto begin = placed_.begin() + first;
         std::nth_element(begin, begin + count / 2, begin + count,
-                         [&](Index a, Index b) { return middles_[a][axis] < middles_[b][axis]; });
+                         [&](const Placed& a, const Placed& b) { return a.middle[axis] < b.middle[axis]; });
         halve(first, count / 2);
         tree_.nodes[here].second = Index(tree_.nodes.size());
         halve(first + count / 2, count - count / 2);
     }
 
- private:
     const Mesh& mesh_;
     Tree& tree_;
-    std::vector<vec3> middles_;
+    std::vector<Placed> placed_;  // only the tree's own, which may be few of the mesh
 };
 
 float distance_squared(const Tree::Node& node, vec3 p) {
@@ -67,7 +78,7 @@ Tree::Tree(const Mesh& all) : Tree(all, all_faces(all)) {}
 
 Tree::Tree(const Mesh& all, std::vector<Index> some) : faces(std::move(some)), mesh(all) {
     nodes.reserve(faces.size());
-    if (!faces.empty()) Halving(mesh, *this).halve(0, Index(faces.size()));
+    if (!faces.empty()) Halving(mesh, *this).halve_all();
 }
 
 std::vector<Tree::Plate> Tree::plates() const {

@@ -52,6 +52,13 @@ bool passes(dvec3 from, dvec3 to, const Corners& t, double reach) {
 }
 
 // Whether two segments come that near where neither has an end.
+bool boxes_are_near(const Corners& a, const Corners& b, double reach) {
+    const auto low = [](const Corners& c) { return glm::min(glm::min(c[0], c[1]), c[2]); };
+    const auto high = [](const Corners& c) { return glm::max(glm::max(c[0], c[1]), c[2]); };
+    return glm::all(glm::lessThanEqual(low(a), high(b) + reach)) &&
+           glm::all(glm::lessThanEqual(low(b), high(a) + reach));
+}
+
 bool sides_are_near(dvec3 p, dvec3 q, dvec3 r, dvec3 s, double reach) {
     const dvec3 u = q - p, w = s - r, off = p - r;
     const double uu = glm::dot(u, u), uw = glm::dot(u, w), ww = glm::dot(w, w), u_off = glm::dot(u, off),
@@ -64,6 +71,7 @@ bool sides_are_near(dvec3 p, dvec3 q, dvec3 r, dvec3 s, double reach) {
 }  // namespace
 
 bool are_near(const Corners& a, const Corners& b, double reach) {
+    if (!boxes_are_near(a, b, reach)) return false;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;
         if (distance(a[i], b) <= reach || distance(b[i], a) <= reach || passes(a[i], a[next], b, reach) ||

@@ -1,5 +1,8 @@
 #include "palpate/mesh/winding_number.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,12 +33,15 @@ class Angles {
         const Half both{along_ * angle.along - up_ * angle.up, along_ * angle.up + up_ * angle.along};
         if (is_upper() && angle.up > 0 && both.up < 0) ++rounds_;
         if (!is_upper() && angle.up < 0 && both.up > 0) --rounds_;
-        const double size = std::abs(both.along) + std::abs(both.up);
-        along_ = both.along / size, up_ = both.up / size;
+        along_ = both.along, up_ = both.up;
+        const double size = std::abs(along_) + std::abs(up_);  // of no meaning, but must fit
+        if (size > most || size < 1 / most) along_ /= size, up_ /= size;
     }
     double sum() const { return std::atan2(up_, along_) + 2 * std::numbers::pi * rounds_; }
 
  private:
+    static constexpr double most = 1e100;  // seldom reached, as a division takes long
+
     bool is_upper() const { return up_ > 0 || (up_ == 0 && along_ < 0); }
 
     double along_ = 1, up_ = 0;
@@ -54,7 +60,22 @@ struct WindingNumber::Sum {
     double plates = 0;
     Angles faces{};
     double winding() const { return plates + 2 * faces.sum() / whole_sphere; }
+    void add_plate(dvec3 area, dvec3 way, double squared) {
+        plates += glm::dot(area, way) / (whole_sphere * squared * std::sqrt(squared));
+    }
 };
+
+WindingNumber::WindingNumber(const Tree& tree)
+    : tree_(tree), plates_(tree.plates()), faces_(tree.faces.size()) {
+    tbb::parallel_for(std::size_t(0), faces_.size(), [&](std::size_t i) {
+        const uvec3 t = tree.mesh.triangles[tree.faces[i]];
+        const dvec3 a(tree.mesh.positions[t.x]), b(tree.mesh.positions[t.y]), c(tree.mesh.positions[t.z]),
+            centre = (a + b + c) / 3.0;
+        const double reach =
+            std::max({glm::distance(centre, a), glm::distance(centre, b), glm::distance(centre, c)});
+        faces_[i] = {0.5 * glm::cross(b - a, c - a), centre, far_off * far_off * reach * reach};
+    });
+}
 
 WindingNumber::Ball WindingNumber::ball(dvec3 centre, double radius) const {
     Ball result{centre, radius};
@@ -104,11 +125,9 @@ double WindingNumber::at(dvec3 point, const Ball& ball) const {
 void WindingNumber::look(std::size_t node, dvec3 point, Sum& sum) const {
     const Tree::Plate& plate = plates_[node];
     const dvec3 way = plate.centre - point;
-    const double distance = glm::length(way);
-    if (distance > far_off * plate.reach) {
-        sum.plates += glm::dot(plate.area, way) / (whole_sphere * distance * distance * distance);
-        return;
-    }
+    const double squared = glm::dot(way, way);
+    if (squared > far_off * far_off * plate.reach * plate.reach)
+        return sum.add_plate(plate.area, way, squared);
     const Tree::Node& box = tree_.nodes[node];
     if (box.second != 0) {
         look(node + 1, point, sum);
@@ -116,6 +135,12 @@ void WindingNumber::look(std::size_t node, dvec3 point, Sum& sum) const {
         return;
     }
     for (Index i = box.first; i < box.first + box.count; ++i) {
+        const Face& face = faces_[i];
+        const dvec3 to_face = face.centre - point;
+        if (const double off = glm::dot(to_face, to_face); off > face.squared) {
+            sum.add_plate(face.area, to_face, off);
+            continue;
+        }
         const uvec3 t = tree_.mesh.triangles[tree_.faces[i]];
         sum.faces.add(half_solid_angle(point, dvec3(tree_.mesh.positions[t.x]),
                                        dvec3(tree_.mesh.positions[t.y]), dvec3(tree_.mesh.positions[t.z])));

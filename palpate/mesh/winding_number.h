@@ -14,7 +14,7 @@ namespace palpate {
 class WindingNumber {
  public:
     /// The tree must outlive this.
-    explicit WindingNumber(const Tree& tree) : tree_(tree), plates_(tree.plates()) {}
+    explicit WindingNumber(const Tree& tree);
 
     double at(dvec3 point) const;
 
@@ -35,11 +35,16 @@ class WindingNumber {
 
  private:
     struct Sum;
+    struct Face {
+        dvec3 area, centre;  // as a plate's
+        double squared;      // of the distance from which it is seen as one
+    };
     void look(std::size_t node, dvec3 point, Sum& sum) const;
     void gather(Index node, Ball& ball) const;
 
     const Tree& tree_;
     std::vector<Tree::Plate> plates_;  // one a node of the tree
+    std::vector<Face> faces_;          // in the tree's order
 };
 
 /// The part of the sphere around `point` that a triangle covers, over 4 pi: positive if its back is seen.

@@ -1,5 +1,6 @@
 #include "palpate/mesh/histogram.h"
 
+#include "palpate/base/error.h"
 #include "palpate/mesh/isosurface.h"
 #include "tests/mesh/shapes.h"
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -83,6 +85,17 @@ TEST(Percentiles, OfWholeNumbersAreWholeNumbers) {
               (std::vector<float>{0, 0, 0, 0, 247, 967}));
     EXPECT_EQ(percentiles({16777215, -3, 5}, std::vector<double>{1, 50, 99}),
               (std::vector<float>{-3, 5, 16777215}));
+}
+
+TEST(Percentiles, LeaveOutWhatIsNoNumberAndNeedOne) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(percentiles({nan, 3, nan, 1, 2, nan}, std::vector<double>{0, 50, 100}),
+              (std::vector<float>{1, 2, 3}));
+    const std::vector<double> half{50};
+    EXPECT_THROW(percentiles({}, half), Error);
+    EXPECT_THROW(percentiles({nan, nan}, half), Error);
+    for (double percent : {-1.0, 100.5, double(nan)})
+        EXPECT_THROW(percentiles({1, 2}, std::vector{percent}), Error) << percent;
 }
 
 // Of two bells of one width and height, the best threshold is halfway.
