@@ -43,6 +43,25 @@ vec3 half_sides(const Collider& collider) {
     return half;
 }
 
+// How deep a point lies in a shape, m; below zero outside. Polygons have no inside.
+float depth(const Plane& plane, vec3 p) { return plane.offset - glm::dot(plane.normal, p); }
+float depth(const Sphere& sphere, vec3 p) { return sphere.radius - glm::distance(p, sphere.centre); }
+float depth(const Capsule& capsule, vec3 p) {
+    const vec3 rod = capsule.to - capsule.from;
+    const float square = glm::dot(rod, rod);
+    const float part = square > 0 ? glm::clamp(glm::dot(p - capsule.from, rod) / square, 0.0f, 1.0f) : 0;
+    return capsule.radius - glm::distance(p, capsule.from + part * rod);
+}
+float depth(const Box& box, vec3 p) {
+    vec3 beyond;  // its faces
+    for (int k = 0; k < 3; ++k)
+        beyond[k] = std::abs(glm::dot(p - box.centre, box.axes[std::size_t(k)])) - box.half[k];
+    const float most = std::max({beyond.x, beyond.y, beyond.z});
+    return box.rounding - (most > 0 ? glm::length(glm::max(beyond, vec3(0))) : most);
+}
+float depth(const Polygon&, vec3) { return -infinite; }
+float depth(const DistanceField& field, vec3 p) { return -field.at(p); }
+
 // How fast any point of a collider goes at most, m/s.
 float fastest(const Path& path, float reach) {
     float speed = 0;
@@ -143,7 +162,29 @@ void look_at_steps(const Scene& scene, const Report& report, std::vector<std::st
 
 }  // namespace
 
+std::size_t held_at_start(const Scene& scene, const Models& made, std::size_t collider, std::size_t body) {
+    constexpr float to_speak_of = 0.1f;  // of the spacing: less is lifted out without harm
+    const Collider& one = made.simulation.colliders[collider];
+    const Path& path = scene.colliders[collider].path;
+    const Pose at = path.empty() ? Pose{vec3(0), mat3(1)} : pose(path, 0);
+    const vec3 origin = made.pivots[collider] + at.position;
+    const Body& nodes = made.models[body].body;
+    std::size_t held = 0;
+    for (std::size_t i = 0; i < nodes.count(); ++i) {
+        if (!(nodes.inverse_mass[i] > 0)) continue;
+        const vec3 p = glm::transpose(at.rotation) * (nodes.positions[i] - origin);
+        const float deep = std::visit([&](const auto& shape) { return depth(shape, p); }, one.shape);
+        held += deep + one.margin > to_speak_of * nodes.spacing;
+    }
+    return held;
+}
+
 std::string how_to_ask_less(const Scene& scene, const Report& report) {
+    for (const Report::Body& body : report.bodies)
+        if (body.held_at_start > 0)
+            return fmt::format(
+                "move the colliders away from body {}: they hold {} of its {} nodes at the start", body.name,
+                body.held_at_start, body.nodes);
     std::string less;
     auto add = [&](const char* what) { less += (less.empty() ? "" : " or ") + std::string(what); };
     bool presses = false, drags = false;
@@ -160,6 +201,10 @@ std::string how_to_ask_less(const Scene& scene, const Report& report) {
     if (collides) add("push it less far");
     if (!less.empty()) return less;
     if (!scene.wind.empty()) return "use a stiffer material, or less wind";
+    constexpr float strong = 50;  // m/s²
+    if (glm::length(scene.simulation.gravity) > strong)
+        return fmt::format("use less gravity: it is {:.3g} times the Earth's",
+                           glm::length(scene.simulation.gravity) / 9.81f);
     return "use a stiffer material: its own weight is too much for it";
 }
 
@@ -179,13 +224,18 @@ std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
                     fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
                                 "between the nodes; use more nodes",
                                 tool.name, body.name));
-        for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c)
+        for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c) {
+            if (const std::size_t held = held_at_start(scene, made, c, m); held > 0)
+                notes.push_back(
+                    fmt::format("collider {} holds {} of {} nodes of body {} at the start; move one away",
+                                c + 1, held, body.count(), body.name));
             if (const float across = half_sides(made.simulation.colliders[c]).y;
                 body.count() > 1 && across < widest_gap * body.spacing)
                 notes.push_back(
                     fmt::format("collider {}: it is {:.3g} m across, and the nodes of body {} are {:.3g} m "
                                 "apart, so it may pass between them; make it larger, or use more nodes",
                                 c + 1, 2 * across, body.name, body.spacing));
+        }
     }
     return notes;
 }

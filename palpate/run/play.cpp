@@ -96,7 +96,6 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
             make_solver(model.body, simulation, context, m < frequencies.size() ? frequencies[m] : 0));
         report.bodies.push_back(describe(model));
     }
-    const std::vector<Feel> feels = feels_of(scene);
     for (const Still& still : made.stills) {
         Report::Body& body = report.bodies.emplace_back();
         body.name = still.name;
@@ -107,11 +106,11 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
     }
     for (const ToolRecipe& tool : scene.tools) {
         if (tool.kind == ToolKind::press)
-            handles_.emplace_back(Tip(tool));
+            handles_.emplace_back(Tip(tool, scene.file));
         else if (tool.kind == ToolKind::drag)
             handles_.emplace_back(Grip(tool));
         else
-            handles_.emplace_back(Probe(tool, feels));
+            handles_.emplace_back(Probe(tool, scene));
         probes_ |= tool.kind == ToolKind::dent;
         report.tools.emplace_back().name = tool.name;
     }

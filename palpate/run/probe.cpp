@@ -20,7 +20,8 @@ std::vector<Feel> feels_of(const Scene& scene) {
     return feels;
 }
 
-Probe::Probe(const ToolRecipe& recipe, std::vector<Feel> feels) : recipe_(recipe), feels_(std::move(feels)) {}
+Probe::Probe(const ToolRecipe& recipe, const Scene& scene)
+    : recipe_(recipe), file_(scene.file), feels_(feels_of(scene)) {}
 
 void Probe::set(std::vector<Feel> feels) {
     feels_ = std::move(feels);
@@ -28,7 +29,7 @@ void Probe::set(std::vector<Feel> feels) {
 }
 
 void Probe::begin(double time, const std::vector<Skin>& skins) {
-    if (recipe_.from) origin_ = brought_to_touch(recipe_, skins);
+    if (recipe_.from) origin_ = brought_to_touch(recipe_, file_, skins);
     Path path = recipe_.path;
     for (Waypoint& point : path) {
         point.time -= time + 1 / rate;  // the device counts from its first read

@@ -14,8 +14,8 @@ std::vector<Feel> feels_of(const Scene& scene);
 /// pictures (2007). Its thousand ticks a second go by the run's own clock.
 class Probe {
  public:
-    /// `feels`: of all surfaces, in the order of the skins.
-    Probe(const ToolRecipe& recipe, std::vector<Feel> feels);
+    /// A tool of a scene, whose surfaces are the skins in its order.
+    Probe(const ToolRecipe& recipe, const Scene& scene);
 
     bool is_there(double time) const { return within(recipe_.path, time); }
 
@@ -41,6 +41,7 @@ class Probe {
                 const std::vector<std::vector<vec3>>& velocities) const;
 
     ToolRecipe recipe_;
+    std::string file_;  // of the scene, for messages
     std::vector<Feel> feels_;
     std::unique_ptr<Touch> touch_;
     vec3 origin_ = vec3(0);  // m, of the path

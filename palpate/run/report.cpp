@@ -51,6 +51,7 @@ Json to_json(const Report::Body& body) {
             {"elastic_energy_j", body.elastic_energy},
             {"largest_speed_m_s", body.largest_speed},
             {"inverted_cells", body.inverted_cells},
+            {"held_at_start", body.held_at_start},
             {"mended", body.mended}};
 }
 

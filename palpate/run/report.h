@@ -22,6 +22,7 @@ struct Report {
         double elastic_energy = 0;        // J, at the end
         double largest_speed = 0;         // m/s, at the end of any frame
         std::size_t inverted_cells = 0;   // at the end of the worst frame
+        std::size_t held_at_start = 0;    // free nodes that lay in colliders at the start
         std::vector<std::string> mended;  // what was done to get its surface
     };
     /// Of one tool.

@@ -267,6 +267,9 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     if (on_gpu(made.simulation.backend)) report.renderer = context.emplace().renderer();
     const gl::Context* const shared = context ? &*context : nullptr;
     Play play(scene, made, report, shared);
+    for (std::size_t m = 0; m < made.models.size(); ++m)
+        for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c)
+            report.bodies[m].held_at_start += held_at_start(scene, made, c, m);
     std::unique_ptr<Show> show;
     if (!settings.video.empty() || !settings.images.empty()) {
         show = std::make_unique<Show>(scene, made, settings, shared);

@@ -55,19 +55,20 @@ std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std
     return std::nullopt;
 }
 
-vec3 brought_to_touch(const ToolRecipe& recipe, const std::vector<Skin>& skins) {
+vec3 brought_to_touch(const ToolRecipe& recipe, const std::string& file, const std::vector<Skin>& skins) {
     const vec3 along = glm::normalize(recipe.along);
     const auto way = way_to_touch(*recipe.from, along, recipe.radius, skins);
     if (!way)
-        throw Error("the tip meets no surface on its way, or starts inside one", "tool " + recipe.name,
-                    "change its `from` or `along`, so that a body lies ahead");
+        throw Error(fmt::format("tool.{}.from: the tip meets no surface on its way, or starts inside one,",
+                                recipe.name),
+                    recipe.lines.where("from", file), "change from or along, so that a body lies ahead");
     return *recipe.from + *way * along;
 }
 
 Press Tip::press(double time, double frame, const std::vector<Skin>& skins) {
     if (untouched_.empty()) {
         untouched_ = skins;
-        if (recipe_.from) origin_ = brought_to_touch(recipe_, skins);
+        if (recipe_.from) origin_ = brought_to_touch(recipe_, file_, skins);
     }
     const vec3 here = centre(time), there = centre(time + frame);
     return {here, (there - here) / float(frame), recipe_.radius, recipe_.stiffness};

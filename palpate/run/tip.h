@@ -3,6 +3,7 @@
 #include "palpate/scene/scene.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace palpate {
@@ -17,7 +18,8 @@ struct Skin {
 /// A tool's tip on its way along a scripted path.
 class Tip {
  public:
-    explicit Tip(const ToolRecipe& recipe) : recipe_(recipe) {}
+    /// `file`: of the scene, for messages.
+    Tip(const ToolRecipe& recipe, const std::string& file) : recipe_(recipe), file_(file) {}
 
     /// Whether it is there at a time, and not yet or no longer away.
     bool is_there(double time) const { return within(recipe_.path, time); }
@@ -40,13 +42,14 @@ class Tip {
 
  private:
     ToolRecipe recipe_;
+    std::string file_;
     vec3 origin_ = vec3(0);  // of the path
     std::vector<Skin> untouched_;
 };
 
 /// Where the tool's tip, moved from its `from` along its `along`, first touches a surface, m. Throws Error if
-/// it never does, or touches one where it starts.
-vec3 brought_to_touch(const ToolRecipe& recipe, const std::vector<Skin>& skins);
+/// it never does, or touches one where it starts; `file` is the scene's, for the message.
+vec3 brought_to_touch(const ToolRecipe& recipe, const std::string& file, const std::vector<Skin>& skins);
 
 /// How far a ball can go from `from` along the unit vector `along` before it touches a surface; nothing if it
 /// never does, or touches one where it starts.

@@ -6,6 +6,7 @@
 #include "palpate/body/influences.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
+#include "palpate/mesh/ending.h"
 #include "palpate/mesh/parts.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/relief.h"
@@ -36,18 +37,29 @@ Bounds bounds_of(const std::vector<vec3>& points) {
     return box;
 }
 
+// Reads a file that a scene names: an error about it says where the scene names it, and as what.
+template <class Read>
+auto reading(const Scene& scene, const std::string& whose, const Lines& lines, const std::string& key,
+             Read read) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}, {} of {}: {}", lines.where(key, scene.file), key, whose, error.what()));
+    }
+}
+
 // ---- nodes ----
 
 // Nodes in rising order, each once. What chooses none is a note: a body that nothing pins would fall.
-// `where` and `key` name the choice: "body cube", "pin.".
-std::vector<int> chosen(const Body& body, const Choice& choice, vec3 down, const std::string& where,
-                        const std::string& key, std::vector<std::string>& notes) {
+// `where` and `key` name the choice: "body cube", "pin."; `lines` are of the recipe that it belongs to.
+std::vector<int> chosen(const Body& body, const Choice& choice, const Scene& scene, const Lines& lines,
+                        const std::string& where, const std::string& key, std::vector<std::string>& notes) {
     std::vector<int> all;
     auto add = [&](const char* which, const std::vector<int>& nodes) {
         if (nodes.empty()) notes.push_back(fmt::format("{}: {}{} holds no node", where, key, which));
         all.insert(all.end(), nodes.begin(), nodes.end());
     };
-    if (choice.below) add("below", nodes_below(body, *choice.below, down));
+    if (choice.below) add("below", nodes_below(body, *choice.below, down(scene)));
     if (choice.near) add("near", nodes_near(body, *choice.near, choice.radius));
     if (choice.near && choice.radius == 0 && !all.empty()) {
         const float far = glm::distance(*choice.near, body.positions[std::size_t(all.back())]);
@@ -58,8 +70,9 @@ std::vector<int> chosen(const Body& body, const Choice& choice, vec3 down, const
     if (!choice.box.empty()) add("box", nodes_in(body, bounds_of(choice.box)));
     for (int node : choice.nodes)
         if (node < 0 || node >= int(body.count()))
-            throw Error(fmt::format("{}nodes names node {} of {}", key, node, body.count()), where,
-                        "count nodes from 0");
+            throw Error(fmt::format("{}: {}nodes names node {}, and there are {} nodes", where, key, node,
+                                    body.count()),
+                        lines.where(key + "nodes", scene.file), "count nodes from 0");
     all.insert(all.end(), choice.nodes.begin(), choice.nodes.end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -67,10 +80,12 @@ std::vector<int> chosen(const Body& body, const Choice& choice, vec3 down, const
 }
 
 // `where` names the region in notes.
-Volume read_labels(const Region& region, const BodyRecipe& recipe, const std::filesystem::path& folder,
+Volume read_labels(const Region& region, const BodyRecipe& recipe, const Scene& scene,
                    const std::string& where, std::vector<std::string>& notes) {
     std::vector<std::string> of_file;
-    Volume labels = read_volume(find_data(region.labels, folder), recipe.units, &of_file);
+    Volume labels = reading(scene, where, region.lines, "labels", [&] {
+        return read_volume(find_data(region.labels, scene.folder), recipe.units, &of_file);
+    });
     for (const std::string& note : of_file) notes.push_back(where + ", labels: " + note);
     const mat3 turned = turn(recipe.rotate);
     labels.origin = turned * labels.origin + recipe.move;
@@ -92,10 +107,10 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
     for (std::size_t r = 0; r < recipe.regions.size(); ++r) {
         const Region& region = recipe.regions[r];
         const std::string where = fmt::format("body {}, region {}", recipe.name, r + 1);
-        std::vector<int> nodes = chosen(body, region.choice, down(scene), where, "", notes);
+        std::vector<int> nodes = chosen(body, region.choice, scene, region.lines, where, "", notes);
         if (!region.labels.empty()) {
             const auto labelled =
-                nodes_labelled(body, read_labels(region, recipe, scene.folder, where, notes), *region.label);
+                nodes_labelled(body, read_labels(region, recipe, scene, where, notes), *region.label);
             if (labelled.empty()) notes.push_back(where + ": label holds no node");
             nodes.insert(nodes.end(), labelled.begin(), labelled.end());
         }
@@ -106,7 +121,8 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
 
 void hold(Body& body, const BodyRecipe& recipe, const Scene& scene, std::vector<std::string>& notes) {
     strengthen_regions(body, recipe, scene, notes);
-    const std::vector<int> held = chosen(body, recipe.pin, down(scene), "body " + recipe.name, "pin.", notes);
+    const std::vector<int> held =
+        chosen(body, recipe.pin, scene, recipe.lines, "body " + recipe.name, "pin.", notes);
     if (held.size() == body.count())
         notes.push_back(fmt::format("body {}: pin holds all its {} nodes, so it will not move; pin fewer",
                                     recipe.name, held.size()));
@@ -153,11 +169,19 @@ void add_notes(const BodyRecipe& recipe, const Model& model, Enclosed filled,
                          100 * filled.cavities / filled.solid, 1e6 * filled.cavities));
     const double cells =
         double(body.cells.size()) * std::pow(body.spacing, 3) / (filled.solid + filled.cavities);
-    if (!(std::abs(cells - 1) < 0.1))
+    if (std::abs(cells - 1) < 0.1) return;
+    const vec3 size = bounds(model.surface).size();
+    const float longest = std::max({size.x, size.y, size.z});
+    if (recipe.spacing > longest)
+        note(
+            fmt::format("spacing is {:.3g} m and the body {:.3g} m long, so its cells hold {:.3g} times its "
+                        "volume, and it weighs as much more if density is given; use a smaller spacing",
+                        recipe.spacing, longest, cells));
+    else
         note(
             fmt::format("the cells hold {:.2f} times the surface's volume: parts are thinner than a cell; "
-                        "more nodes follow them better",
-                        cells));
+                        "{} follows them better",
+                        cells, recipe.spacing > 0 ? "a smaller spacing" : "a lattice of more nodes"));
 }
 
 ClothSettings cloth_settings(const BodyRecipe& recipe) {
@@ -203,9 +227,13 @@ Mesh cloth_mesh(const Body& body) {
     return mesh;
 }
 
-void read_maps(const BodyRecipe& recipe, const std::filesystem::path& folder, Model& model) {
-    if (!recipe.colour_map.empty()) model.colour_map = read_image(find_data(recipe.colour_map, folder));
-    if (!recipe.normal_map.empty()) model.normal_map = read_image(find_data(recipe.normal_map, folder));
+void read_maps(const BodyRecipe& recipe, const Scene& scene, Model& model) {
+    auto read = [&](const char* key, const std::string& file) {
+        return reading(scene, "body " + recipe.name, recipe.lines, key,
+                       [&] { return read_image(find_data(file, scene.folder)); });
+    };
+    if (!recipe.colour_map.empty()) model.colour_map = read("colour_map", recipe.colour_map);
+    if (!recipe.normal_map.empty()) model.normal_map = read("normal_map", recipe.normal_map);
     if (recipe.weave) model.normal_map = weave(*recipe.weave);
 }
 
@@ -301,10 +329,17 @@ const Model* unchanged(const BodyRecipe& recipe, const Scene& scene, const Earli
     return earlier->model(recipe, without_looks);
 }
 
+CleanSurface read_and_mend(const BodyRecipe& recipe, const std::string& whose, const Scene& scene,
+                           const Progress& progress) {
+    return reading(scene, whose, recipe.lines, recipe.volume.empty() ? "surface" : "volume",
+                   [&] { return make_surface(recipe, scene.folder, progress); });
+}
+
 CleanSurface surface_of(const BodyRecipe& recipe, const Scene& scene, const Earlier* earlier,
                         const Progress& progress) {
     const Model* old = earlier && !recipe.is_textured() ? earlier->model(recipe, without_body) : nullptr;
-    if (!old || old->surface.triangles.empty()) return make_surface(recipe, scene.folder, progress);
+    if (!old || old->surface.triangles.empty())
+        return read_and_mend(recipe, "body " + recipe.name, scene, progress);
     CleanSurface made;
     made.mesh = old->surface;
     made.steps = old->steps;
@@ -350,7 +385,7 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* ear
     else
         model.surface = std::move(recipe.is_textured() ? made.drawn : made.mesh);
     if (recipe.has_normal_map() && !model.surface.triangles.empty()) compute_tangents(model.surface);
-    read_maps(recipe, scene.folder, model);
+    read_maps(recipe, scene, model);
     tell(progress, recipe, "hanging the surface on it", 0.9);
     if (!model.surface.positions.empty() && !model.surface.triangles.empty())
         model.embedding = embed(model.surface, model.body, recipe.mapping);
@@ -367,7 +402,7 @@ Still build_still(const BodyRecipe& wanted, const Scene& scene, const Earlier* e
                   std::vector<std::string>& notes, const Progress& progress) {
     if (const Still* same = earlier ? earlier->still(wanted) : nullptr) return *same;
     const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
-    CleanSurface made = make_surface(recipe, scene.folder, progress);
+    CleanSurface made = read_and_mend(recipe, "surface " + recipe.name, scene, progress);
     for (const std::string& note : made.notes)
         notes.push_back(fmt::format("surface {}: {}", recipe.name, note));
     return {recipe.name, std::move(made.mesh), std::move(made.steps)};
@@ -380,7 +415,8 @@ MovedNodes find_moved(const MoveRecipe& recipe, std::size_t number, const Scene&
     MovedNodes moved;
     while (scene.bodies[moved.body].name != recipe.body) ++moved.body;
     const Body& body = models[moved.body].body;
-    moved.nodes = chosen(body, recipe.nodes, down(scene), fmt::format("move {}", number), "nodes.", notes);
+    moved.nodes =
+        chosen(body, recipe.nodes, scene, recipe.lines, fmt::format("move {}", number), "nodes.", notes);
     Bounds box;
     for (int node : moved.nodes) box.include(body.positions[std::size_t(node)]);
     moved.about = recipe.about.value_or(box.empty() ? vec3(0) : box.centre());
@@ -418,20 +454,47 @@ void look_at_paths(const Scene& scene, Models& made) {
 
 // ---- files ----
 
+// A file of another kind than its key wants: "a volume", and what to write instead. Of none no kind.
+struct Mistaken {
+    std::string kind, remedy;
+};
+
+Mistaken mistaken(const std::string& key, const std::string& name, const std::filesystem::path& file) {
+    const bool wants_volume = key == "volume" || key == "labels", wants_surface = key.ends_with("surface");
+    if (ending(file) == ".toml") return {"a scene", "run it by itself, or name a mesh or a volume"};
+    if (wants_volume && is_mesh(file))
+        return {"a mesh", key == "volume" ? fmt::format("write surface = \"{}\"", name) : "name a volume"};
+    if (!wants_surface || is_mesh(file)) return {};
+    if (std::filesystem::is_directory(file))
+        return {"a folder", key == "surface" ? "name a mesh; a folder of DICOM slices goes under volume = …"
+                                             : "name a mesh"};
+    if (is_volume(file))
+        return {"a volume", key == "surface" ? fmt::format("write volume = \"{}\"", name)
+                                             : "make a mesh of it first: palpate import"};
+    return {};
+}
+
+// The key of a collider that names a file.
+const char* file_key(const ColliderRecipe& recipe) {
+    return std::holds_alternative<Polygon>(recipe.collider.shape) ? "polygon.surface" : "field.surface";
+}
+
 // All files that a scene names are looked for before the work on the first begins.
 void find_files(const Scene& scene) {
     auto want = [&](const std::string& whose, const Lines& lines, const char* key, const std::string& file) {
-        if (file.empty() || is_found(file, scene.folder)) return;
-        const int line = lines.of(key);
-        throw Error(fmt::format("cannot find the {} of {}, {},", key, whose, file),
-                    line > 0 ? fmt::format("{}, line {}", scene.file, line) : scene.file,
-                    remedy_for_missing(file, scene.folder));
+        if (file.empty()) return;
+        if (!is_found(file, scene.folder))
+            throw Error(fmt::format("cannot find the {} of {}, {},", key, whose, file),
+                        lines.where(key, scene.file), remedy_for_missing(file, scene.folder));
+        const Mistaken other = mistaken(key, file, find_data(file, scene.folder));
+        if (!other.kind.empty())
+            throw Error(fmt::format("{} of {} is {}, which is {},", key, whose, file, other.kind),
+                        lines.where(key, scene.file), other.remedy);
     };
     auto want_surface = [&](const std::string& whose, const BodyRecipe& recipe) {
         want(whose, recipe.lines, "volume", recipe.volume);
-        const bool stood_in_for = std::ranges::any_of(
-            recipe.stand_ins, [&](const std::string& file) { return is_found(file, scene.folder); });
-        if (!stood_in_for) want(whose, recipe.lines, "surface", recipe.surface);
+        std::vector<std::string> none;  // of the notes on what stands in for what
+        want(whose, recipe.lines, "surface", with_surface(recipe, scene.folder, none).surface);
         want(whose, recipe.lines, "colour_map", recipe.colour_map);
         want(whose, recipe.lines, "normal_map", recipe.normal_map);
         for (const Region& region : recipe.regions) want(whose, region.lines, "labels", region.labels);
@@ -440,9 +503,7 @@ void find_files(const Scene& scene) {
     for (const BodyRecipe& surface : scene.surfaces) want_surface("surface " + surface.name, surface);
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         const ColliderRecipe& collider = scene.colliders[i];
-        const bool polygon = std::holds_alternative<Polygon>(collider.collider.shape);
-        want(fmt::format("collider {}", i + 1), collider.lines, polygon ? "polygon.surface" : "field.surface",
-             collider.surface);
+        want(fmt::format("collider {}", i + 1), collider.lines, file_key(collider), collider.surface);
     }
 }
 
@@ -450,10 +511,12 @@ void find_files(const Scene& scene) {
 
 constexpr double most_field_points = 3e7;
 
-Mesh read_shape(const ColliderRecipe& recipe, const std::filesystem::path& folder, const std::string& where,
+Mesh read_shape(const ColliderRecipe& recipe, const Scene& scene, const std::string& where,
                 std::vector<std::string>& notes) {
     std::vector<std::string> of_file;
-    Mesh mesh = read_mesh(find_data(recipe.surface, folder), recipe.units, &of_file);
+    Mesh mesh = reading(scene, where, recipe.lines, file_key(recipe), [&] {
+        return read_mesh(find_data(recipe.surface, scene.folder), recipe.units, &of_file);
+    });
     for (const std::string& note : of_file) notes.push_back(fmt::format("{}: {}", where, note));
     weld(mesh);
     drop_collapsed(mesh);
@@ -517,7 +580,7 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
     Collider collider = recipe.collider;
     std::optional<vec3> about = recipe.about;
     if (!recipe.surface.empty()) {
-        const Mesh mesh = read_shape(recipe, scene.folder, where, result.notes);
+        const Mesh mesh = read_shape(recipe, scene, where, result.notes);
         if (!about) about = bounds(mesh).centre();
         if (const auto* polygon = std::get_if<Polygon>(&collider.shape)) {
             collider.shape = polygon_of(mesh, polygon->thickness);
@@ -526,7 +589,9 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
                 result.notes.push_back(fmt::format(
                     "{}: its surface has {} open edges, so what is inside is a guess; close it first", where,
                     open));
-            DistanceField field = field_of(mesh, std::get<DistanceField>(collider.shape).spacing, where);
+            DistanceField field = reading(scene, where, recipe.lines, "field.surface", [&] {
+                return field_of(mesh, std::get<DistanceField>(collider.shape).spacing, where);
+            });
             if (const auto thin = thin_walls(mesh, field)) {
                 const bool fits = field_points(bounds(mesh).size(), thin->spacing) <= most_field_points;
                 result.notes.push_back(fmt::format(

@@ -20,7 +20,7 @@ class Require {
 
     void operator()(const std::string& key, bool holds, const std::string& what,
                     const std::string& remedy) const {
-        if (!holds) source_.fail(lines_.of(key), what_of_ + ": " + what, remedy);
+        if (!holds) throw Error(what_of_ + ": " + what, lines_.where(key, source_.file), remedy);
     }
     bool has(const std::string& key) const { return lines_.has(key); }
 
@@ -119,6 +119,7 @@ void check(const Feel& feel, const Require& require) {
 // What every recipe of a surface says.
 void check_surface(const BodyRecipe& body, const Require& require) {
     require("iso", !body.volume.empty() || !body.iso, "iso without a volume", "remove it");
+    require("size", body.size == 0 || body.size >= 1e-6f, "size is below 1e-6 m", "give it in m");
     require("size", body.size == 0 || !body.units, "size beside units, of which one must count",
             "remove one");
     check(body.feel, require);
@@ -231,11 +232,11 @@ void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const Sc
 // ---- all of it ----
 
 // Names become parts of file names and cells of tables.
-void check_name(const std::string& name, int line, const SceneSource& source) {
+void check_name(const std::string& name, const Lines& lines, const SceneSource& source) {
     for (unsigned char c : name)
         if (c < ' ' || std::string_view("/\\,\"").find(char(c)) != std::string_view::npos)
-            source.fail(line, "a name with a slash, a comma, a quote or an unprintable letter",
-                        "choose another");
+            throw Error("a name with a slash, a comma, a quote or an unprintable letter",
+                        lines.where("name", source.file), "choose another");
 }
 
 }  // namespace
@@ -249,9 +250,9 @@ void check(Scene& scene, const SceneSource& source) {
     std::set<std::string> names;
     auto name = [&](BodyRecipe& one, const char* kind, std::size_t number) {
         if (one.name.empty()) one.name = fmt::format("{}{}", kind, number);
-        check_name(one.name, one.lines.of("name"), source);
+        check_name(one.name, one.lines, source);
         if (!names.insert(one.name).second)
-            source.fail(one.lines.of("name"), "a second body or surface named " + one.name,
+            throw Error("a second body or surface named " + one.name, one.lines.where("name", source.file),
                         "give each its own name");
     };
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -267,7 +268,7 @@ void check(Scene& scene, const SceneSource& source) {
     for (std::size_t i = 0; i < scene.moves.size(); ++i) check(scene.moves[i], i + 1, bodies, source);
     for (std::size_t i = 0; i < scene.tools.size(); ++i) {
         if (scene.tools[i].name.empty()) scene.tools[i].name = fmt::format("tool{}", i + 1);
-        check_name(scene.tools[i].name, scene.tools[i].lines.of("name"), source);
+        check_name(scene.tools[i].name, scene.tools[i].lines, source);
         check(scene.tools[i], bodies, source);
     }
     if (scene.tools.size() > 8) source.fail(0, "more than 8 tools", "use fewer");

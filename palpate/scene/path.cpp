@@ -97,7 +97,9 @@ Path make_path(const std::vector<std::vector<double>>& rows, Rows kind, const Ro
                  poses ? "write t, x, y, z and, if it turns, rx, ry, rz" : "write t, x, y, z");
         if (v.size() != rows[0].size())
             fail(i, "is not as long as the first", "give all rows a rotation, or none");
-        if (!path.empty() && v[0] <= path.back().time) fail(i, "goes back in time", "sort the rows by time");
+        if (!path.empty() && v[0] == path.back().time)
+            fail(i, "repeats the time of the row before", "give each row a time of its own");
+        if (!path.empty() && v[0] < path.back().time) fail(i, "goes back in time", "sort the rows by time");
         Waypoint point{v[0], vec3(v[1], v[2], v[3])};
         if (v.size() == 7) point.rotation = vec3(v[4], v[5], v[6]);
         if (!(glm::length(point.position) < 1e6f && glm::length(point.rotation) < 1e6f))

@@ -8,12 +8,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <regex>
 #include <sstream>
 
 namespace palpate {
 namespace {
 
 // ---- what a scene file may hold ----
+
+// What bodies are made of; and coordinates, as far as paths may lead.
+const NumberRange length = between(1e-6, 1e4, "m");
+const NumberRange place = between(-1e6, 1e6, "m");
 
 // A path is the name of a file, or rows of numbers.
 void read_path_value(Reader& read, Path& path, Rows kind, const Scene& scene) {
@@ -22,7 +27,11 @@ void read_path_value(Reader& read, Path& path, Rows kind, const Scene& scene) {
     if (const auto file = node->value_exact<std::string>()) {
         if (!is_found(*file, scene.folder))
             read.fail(*node, "cannot find the file " + *file, remedy_for_missing(*file, scene.folder));
-        path = read_path(find_data(*file, scene.folder), kind);
+        try {
+            path = read_path(find_data(*file, scene.folder), kind);
+        } catch (const Error& error) {
+            throw Error(fmt::format("{}, path: {}", read.where(*node), error.what()));
+        }
         return;
     }
     std::vector<std::vector<double>> rows;
@@ -37,9 +46,9 @@ void read_path_value(Reader& read, Path& path, Rows kind, const Scene& scene) {
 void read_fields(Reader& read, Choice& choice) {
     read("below", choice.below, between(0, 1, "", "0.15 is the lowest 15 %"));
     read("nodes", choice.nodes, zero_or_more("", "count nodes from 0"));
-    read("near", choice.near);
+    read("near", choice.near, place);
     read("radius", choice.radius, zero_or_more("m"));
-    read("box", choice.box);
+    read("box", choice.box, place);
 }
 
 // The moduli and stiffnesses of bodies and their regions. Brain has 1e3 to 1e4 Pa, steel 2e11.
@@ -100,9 +109,9 @@ void read_surface(Reader& read, BodyRecipe& body) {
     read("iso", body.iso);
     read("units", body.units);
     read("rotate", body.rotate);
-    read("size", body.size, zero_or_more("m", "0 leaves it as it is"));
+    read("size", body.size, between(0, 1e4, "m", "0 leaves it as it is"));
     read("centre", body.centre);
-    read("move", body.move, any_number("m").usual(0, 100));
+    read("move", body.move, place.usual(0, 100));
     read("largest", body.largest);
     read("weld", body.repair.weld, zero_or_more("m"));
     read("specks", body.repair.specks,
@@ -138,7 +147,7 @@ void read_fields(Reader& read, BodyRecipe& body) {
     read("cloth", body.cloth, between(1, most_nodes, "nodes"));
     read("sheet", body.sheet);
     read("nodes", body.nodes, between(1, most_nodes, "", "20000 is usual"));
-    read("spacing", body.spacing, above_zero("m"));
+    read("spacing", body.spacing, length);
     read("cage", body.cage, between(1, most_nodes, "nodes"));
     read_material(read, body);
     read("mapping", body.mapping);
@@ -156,23 +165,23 @@ const NumberRange extent = above_zero("m").usual(1e-5, 100);
 
 void read_shape(Reader& read, Plane& plane) {
     read("normal", plane.normal);
-    read("offset", plane.offset, any_number("m").usual(0, 100));
+    read("offset", plane.offset, place.usual(0, 100));
 }
 
 void read_shape(Reader& read, Sphere& sphere) {
-    read("centre", sphere.centre);
+    read("centre", sphere.centre, place);
     read("radius", sphere.radius, extent);
 }
 
 void read_shape(Reader& read, Capsule& capsule) {
-    read("from", capsule.from);
-    read("to", capsule.to);
+    read("from", capsule.from, place);
+    read("to", capsule.to, place);
     read("radius", capsule.radius, extent);
 }
 
 void read_shape(Reader& read, Box& box) {
     vec3 size(0), rotate(0);
-    read("centre", box.centre);
+    read("centre", box.centre, place);
     read("half", box.half, zero_or_more("m"));
     read("size", size, zero_or_more("m"));
     read("rotate", rotate);
@@ -189,7 +198,7 @@ void read_file(Reader& read, ColliderRecipe& recipe) {
     read("surface", recipe.surface);
     read("units", recipe.units);
     read("rotate", recipe.rotate);
-    read("move", recipe.move);
+    read("move", recipe.move, place);
 }
 
 void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe) {
@@ -236,7 +245,7 @@ void read_fields(Reader& read, ColliderRecipe& recipe, const Scene& scene) {
     read("margin", recipe.collider.margin, zero_or_more("m").usual(0, 1));
     read.colour("colour", recipe.colour);
     read_path_value(read, recipe.path, Rows::poses, scene);
-    read("about", recipe.about);
+    read("about", recipe.about, place);
     read.finish();  // a misspelt shape is named as such
     if (shapes > 1) read.fail("a collider with two shapes", "write one [[collider]] for each");
     if (shapes == 0)
@@ -250,7 +259,7 @@ void read_fields(Reader& read, MoveRecipe& move, const Scene& scene) {
     read("body", move.body);
     read.table("nodes", [&](Reader& inside) { read_fields(inside, move.nodes); });
     read_path_value(read, move.path, Rows::poses, scene);
-    read("about", move.about);
+    read("about", move.about, place);
 }
 
 void read_fields(Reader& read, ToolRecipe& tool, const Scene& scene) {
@@ -261,11 +270,11 @@ void read_fields(Reader& read, ToolRecipe& tool, const Scene& scene) {
     read("device", tool.device);
     read("radius", tool.radius, above_zero("m", "a finger's tip has about 0.01 m").usual(1e-5, 1));
     read("stiffness", tool.stiffness, above_zero("N/m", "400 is usual").usual(1e-3, 1e6));
-    read("from", tool.from);
+    read("from", tool.from, place);
     read("along", tool.along);
     read("shaft", tool.shaft, zero_or_more("m").usual(0, 10));
     read("body", tool.body);
-    read("near", tool.near);
+    read("near", tool.near, place);
     read("relative", tool.relative);
     read.colour("colour", tool.colour);
     read_path_value(read, tool.path, Rows::places, scene);
@@ -316,7 +325,7 @@ void read_look_at(Reader& read, std::variant<std::monostate, vec3, std::string>&
 }
 
 void read_camera(Reader& read, Scene& scene) {
-    read("eye", scene.camera.eye);
+    read("eye", scene.camera.eye, place);
     read("up", scene.camera.up);
     read("angle", scene.camera.angle, between(0.01, 179, "degrees", "35 is usual"));
     read_look_at(read, scene.camera.look_at);
@@ -499,16 +508,53 @@ std::string nth_line(const std::string& text, int number) {
     return line;
 }
 
-// The value of a line that is a number with a comma, written with a point; empty if it is none.
-std::string decimal_comma(const std::string& line) {
-    std::string value = line.substr(line.find('=') + 1);
-    value = value.substr(0, value.find('#'));
-    std::erase_if(value, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
-    const bool is_number = value.find_first_not_of("+-0123456789,") == value.npos;
-    const auto comma = value.find(',');
-    if (!is_number || comma == value.npos || comma != value.rfind(',')) return "";
-    value[comma] = '.';
-    return value;
+// The unit that a key's numbers are in, "Pa", as far as reading the scene with another line in its place
+// finds out; else empty.
+std::string unit_of(const std::string& text, int number, const std::string& line) {
+    std::istringstream lines(text);
+    std::string mended;
+    int n = 0;
+    for (std::string one; std::getline(lines, one);) mended += (++n == number ? line : one) + "\n";
+    const SceneSource source{"a scene"};
+    SceneReading reading{source};
+    try {
+        const toml::table root = toml::parse(mended);
+        Scene scene;
+        Reader reader(root, reading, "");
+        read_fields(reader, scene);
+    } catch (const std::exception&) {  // of some other line: what was read until then is known
+    }
+    const auto found = reading.units.find(number);
+    return found == reading.units.end() ? "" : found->second;
+}
+
+// What to write instead of a line that is no TOML, by the mistakes that people make.
+std::string advice_on(const std::string& text, int number) {
+    const std::string line = nth_line(text, number);
+    const std::string value = R"(([+-]?[0-9][0-9_]*(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?))";
+    const std::string key = R"(^\s*([A-Za-z_]+)\s*=\s*)", end = R"(\s*(?:#.*)?$)";
+    std::smatch found;
+    auto is = [&](const std::string& pattern) { return std::regex_search(line, found, std::regex(pattern)); };
+    if (is(key + R"(([+-]?[0-9]+,[0-9]+))" + end))
+        return "write numbers with a point: " + with_point(found[2]);
+    if (is(key + value + R"(\s*([^\s0-9,;\]}#"'=][^\s,;\]}#"'=]*))" + end)) {
+        const std::string name = found[1], amount = found[2], given = found[3];
+        const std::string mended = fmt::format("{} = {}", name, with_point(amount));
+        const std::string unit = unit_of(text, number, mended);
+        return fmt::format("write the number alone, without {}{}", given,
+                           unit.empty() ? "" : ": " + name + " is in " + unit);
+    }
+    if (is(R"(\[[^\]"]*;)")) return "put commas between the numbers in brackets: [5, 5, 5]";
+    if (is(R"(\[\s*[-+0-9.]+\s+[-+0-9.])")) return "put commas between the numbers in brackets: [5, 5, 5]";
+    if (is(key + "(True|TRUE|yes|Yes|on|False|FALSE|no|No|off)" + end))
+        return fmt::format(
+            "write {} = {}", std::string(found[1]),
+            std::string("TtYyo").find(found[2].str()[0]) != std::string::npos && found[2] != "off" ? "true"
+                                                                                                   : "false");
+    if (is(key + R"(([A-Za-z_/.~][^"'#=]*?))" + end))
+        return fmt::format("write texts in quotes: {} = \"{}\"", std::string(found[1]),
+                           std::string(found[2]));
+    return "correct the TOML there";
 }
 
 toml::table changed_table(const std::string& text, const SceneSource& source,
@@ -518,9 +564,7 @@ toml::table changed_table(const std::string& text, const SceneSource& source,
         root = toml::parse(text);
     } catch (const toml::parse_error& error) {
         const int line = int(error.source().begin.line);
-        const std::string number = decimal_comma(nth_line(text, line));
-        source.fail(line, std::string(error.description()),
-                    number.empty() ? "correct the TOML there" : "write numbers with a point: " + number);
+        source.fail(line, std::string(error.description()), advice_on(text, line));
     }
     // Another source first: it takes away what was said of the old one.
     std::vector<Change> ordered(changes.begin(), changes.end());

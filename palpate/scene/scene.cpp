@@ -3,6 +3,8 @@
 #include "palpate/base/error.h"
 #include "palpate/base/names.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 
@@ -24,6 +26,11 @@ std::optional<std::filesystem::path> find(const std::string& name, const std::fi
 }
 
 }  // namespace
+
+std::string Lines::where(const std::string& key, const std::string& file) const {
+    if (const int line = of(key); line > 0) return fmt::format("{}, line {}", file, line);
+    return keys.empty() ? file : "--set";  // without keys the recipe is of no text
+}
 
 vec3 sky(const Scene& scene) {
     const vec3 up = scene.camera.up.value_or(-scene.simulation.gravity);

@@ -34,6 +34,8 @@ struct Lines {
         const auto found = keys.find(key);
         return found == keys.end() ? table : found->second;
     }
+    /// Where the scene of that file says it, for messages: the file and the line; "--set" where a change did.
+    std::string where(const std::string& key, const std::string& file) const;
     bool operator==(const Lines&) const { return true; }
 };
 

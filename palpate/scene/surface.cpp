@@ -81,6 +81,13 @@ void mend(Mesh& mesh, Work& work) {
     const BodyRecipe& recipe = work.recipe;
     RepairSettings settings = recipe.repair;
     const float wanted = scale_of(mesh, recipe), scale = wanted > 0 && std::isfinite(wanted) ? wanted : 1;
+    const vec3 sides = bounds(mesh).size();
+    const float longest = scale * std::max({sides.x, sides.y, sides.z});
+    for (const auto& [key, length] : {std::pair{"weld", settings.weld}, {"voxel", settings.voxel}})
+        if (longest > 0 && length > longest)
+            throw Error(
+                fmt::format("{} is {:.3g} m, and the whole surface is {:.3g} m long", key, length, longest),
+                file_of(recipe), fmt::format("use a smaller {}", key));
     settings.weld /= scale;
     settings.voxel /= scale;
     settings.largest = recipe.largest;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
@@ -45,10 +46,11 @@ struct NumberRange {
         const double size = std::abs(value);
         return size == 0 || (size >= usual_least && size <= usual_most);
     }
-    /// "not above 0", "negative", "not from 0 to 1".
-    std::string complaint() const {
+    /// About a number that is outside: "not above 0", "negative", "not from 0 to 1".
+    std::string complaint(double value) const {
         const bool no_end = std::isinf(most);
-        if (no_end && least == 0) return above ? "not above 0" : "negative";
+        if (value < 0 && least == 0 && !above) return "negative";
+        if (no_end && least == 0) return "not above 0";
         if (no_end) return fmt::format("less than {}", least);
         return fmt::format("not {} {} {} {}", above ? "above" : "from", least, above ? "and at most" : "to",
                            most);
@@ -84,14 +86,36 @@ struct SceneReading {
     const SceneSource& source;
     std::vector<std::string> notes = {};  // what looks wrong
     std::map<std::string, std::set<std::string>> keys =
-        {};  // that each table may have, by its path: "body.cube"
+        {};                                 // that each table may have, by its path: "body.cube"
+    std::map<int, std::string> units = {};  // of the numbers on each line
 };
+
+/// A number with a decimal comma as TOML writes it; a comma before three digits may part thousands: "20,000"
+/// is "20.000, or 20000 if the comma parts thousands".
+inline std::string with_point(const std::string& number) {
+    const auto comma = number.find(',');
+    std::string decimal = number, whole = number;
+    if (comma == number.npos) return number;
+    decimal[comma] = '.';
+    whole.erase(comma, 1);
+    const auto first = number.find_first_not_of("+-");
+    const bool thousands = number.size() - comma == 4 && comma - first <= 3 && number[first] != '0' &&
+                           number.find_first_not_of("0123456789", comma + 1) == number.npos;
+    return thousands ? fmt::format("{}, or {} if the comma parts thousands", decimal, whole) : decimal;
+}
+
+/// A number, whole or not; a value that is none is not a number.
+inline double number_of(const toml::node& node) {
+    if (const auto whole = node.value_exact<std::int64_t>()) return double(*whole);
+    return node.value_exact<double>().value_or(std::numeric_limits<double>::quiet_NaN());
+}
 
 /// What a value is, for messages: "many" in quotes, or "a list of 3".
 inline std::string in_words(const toml::node& node) {
     if (const auto text = node.value_exact<std::string>()) return '"' + *text + '"';
     if (const auto truth = node.value_exact<bool>()) return *truth ? "true" : "false";
-    if (const auto number = node.value<double>()) return fmt::format("{:.6g}", *number);
+    if (const auto whole = node.value_exact<std::int64_t>()) return std::to_string(*whole);
+    if (node.is_number()) return fmt::format("{:.6g}", number_of(node));
     if (const toml::array* array = node.as_array()) return fmt::format("a list of {}", array->size());
     return node.is_table() ? "a table" : "a date or a time";
 }
@@ -114,6 +138,7 @@ class Reader {
     void operator()(const char* key, T& value, const NumberRange& range) {
         const toml::node* node = get(key);
         if (!node) return;
+        reading_.units[line_of(*node)] = range.unit;
         read(key, *node, value);
         check(key, *node, range);
     }
@@ -125,6 +150,9 @@ class Reader {
         read(key, *node, value);
         if (std::min({value.x, value.y, value.z}) >= 0 && std::max({value.x, value.y, value.z}) <= most)
             return;
+        if (std::min({value.x, value.y, value.z}) < 0)
+            fail(*node, full(key) + " is negative",
+                 fmt::format("give red, green and blue from 0 to {}", most));
         auto linear = [](float byte) {  // as sRGB has it
             const double part = std::clamp(byte / 255.0, 0.0, 1.0);
             return part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
@@ -191,13 +219,18 @@ class Reader {
         return lines;
     }
 
+    /// Where a value stands, for messages.
+    std::string where(const toml::node& node) const {
+        const int line = line_of(node);
+        return line > 0 ? fmt::format("{}, line {}", reading_.source.file, line) : "--set";
+    }
     [[noreturn]] void fail(const toml::node& node, const std::string& what, const std::string& remedy) const {
-        if (line_of(node) > 0) reading_.source.fail(line_of(node), what, remedy);
-        SceneSource{"--set"}.fail(0, what, remedy);
+        throw Error(what, where(node), remedy);
     }
     /// About the table itself.
     [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
-        reading_.source.fail(line_of(table_), path_ + ": " + what, remedy);
+        const int line = line_of(table_);
+        (line > 0 ? reading_.source : SceneSource{"--set"}).fail(line, path_ + ": " + what, remedy);
     }
     [[noreturn]] void wrong(std::string_view key, const toml::node& node, std::string_view wanted,
                             const std::string& remedy = "correct its value") const {
@@ -284,19 +317,20 @@ class Reader {
     }
 
     void read_number(std::string_view key, const toml::node& node, double& value, const char* wanted) const {
-        if (!node.is_number() || !std::isfinite(*node.value<double>()))
-            wrong(key, node, wanted, how_to_write(node));
-        value = *node.value<double>();
+        value = number_of(node);
+        if (!std::isfinite(value)) wrong(key, node, wanted, how_to_write(node));
     }
 
     // A number in quotes, or with a decimal comma, can be told.
     static std::string how_to_write(const toml::node& node) {
-        std::string text = node.value_exact<std::string>().value_or("");
+        const std::string given = node.value_exact<std::string>().value_or("");
+        std::string text = given;
         std::replace(text.begin(), text.end(), ',', '.');
         double number = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
         const bool is_number = !text.empty() && error == std::errc() && end == text.data() + text.size();
-        return is_number ? fmt::format("write {}: with a point, and without quotes", text) : "write a number";
+        return is_number ? fmt::format("write {}: with a point, and without quotes", with_point(given))
+                         : "write a number";
     }
 
     // Of a number, or of each of several.
@@ -305,7 +339,7 @@ class Reader {
         auto look_at = [&](double value) {
             const std::string is = fmt::format("{} is {:.6g}{}", full(key), value, unit);
             if (!range.holds(value))
-                fail(node, is + ", which is " + range.complaint(),
+                fail(node, is + ", which is " + range.complaint(value),
                      range.example.empty() ? "correct its value" : std::string(range.example));
             if (range.is_usual(value)) return;
             const int line = line_of(node);
@@ -319,7 +353,7 @@ class Reader {
         if (const toml::array* array = node.as_array())
             for (const toml::node& one : *array) for_each_number(one, look_at);
         else
-            look_at(*node.value<double>());
+            look_at(number_of(node));
     }
 
     // What others call our keys.

@@ -29,7 +29,7 @@ void check_step(const Body& body, const Simulation& simulation, double frequency
                     where, "use step = \"auto\" or a shorter one, or --force to see it blow up");
     if (simulation.step <= 0 && !(bound > 0))
         throw Error(fmt::format("{} is stable at no step without damping", name_of(integrator)), where,
-                    "give the body damping, or choose verlet");
+                    "choose verlet, which needs none");
     const double automatic = automatic_step(integrator, touched, body.damping, body.link_damping);
     const double step = simulation.step > 0 ? simulation.step : automatic;
     const double wanted = simulation.frame / most_steps_per_frame;

@@ -259,7 +259,34 @@ TEST(Notes, AdviceNamesWhatActs) {
     EXPECT_EQ(advice("[[move]]\nnodes = { below = 0 }\n" + path), "move its nodes less far");
     EXPECT_EQ(advice("[[collider]]\nplane = {}\n" + path + "[[tool]]\n" + path),
               "press less hard or push it less far");
+    EXPECT_EQ(advice("[simulation]\ngravity = [0, 0, -981]\n"),
+              "use less gravity: it is 100 times the Earth's");
     EXPECT_EQ(advice("[wind]\nvelocity = [9, 0, 0]\n"), "use a stiffer material, or less wind");
+}
+
+TEST(Notes, ABodyThatAColliderHoldsAtTheStart) {
+    const std::string body = weak + "pin = { below = 0 }\n[[collider]]\n";  // y from 0.02 to 0.08
+    for (const auto& [shape, words] : std::vector<std::array<std::string, 2>>{
+             {"plane = { offset = 10 }", "1 holds 48 of 64"},
+             {"plane = { offset = 0.05 }", "1 holds 16 of 64"},
+             {"margin = 5\nplane = {}", "1 holds 48 of 64"},
+             {"sphere = { centre = [0.03, 0.05, 0.03], radius = 1 }", "1 holds 48 of 64"},
+             {"sphere = { centre = [0.03, 0.05, 0.03], radius = 0.02 }", "1 holds 8 of 64"},
+             {"capsule = { from = [0, 0.08, 0], to = [0.06, 0.08, 0], radius = 0.005 }", "1 holds 4 of 64"},
+             {"box = { centre = [0.03, 0.05, 0.03], size = [1, 1, 1] }", "1 holds 48 of 64"},
+             {"plane = {}\npath = [[0, 0, 0.05, 0], [1, 0, 0, 0]]", "1 holds 16 of 64"}}) {
+        const Report report = run_for(body + shape + "\n", 0);
+        EXPECT_TRUE(has_note(report, "collider " + words + " nodes of body cube at the start")) << shape;
+        const Scene some = parse_scene(body + shape + "\n", "test.toml", ".");
+        EXPECT_NE(how_to_ask_less(some, report).find("move the colliders away from body cube"),
+                  std::string::npos);
+    }
+    for (const char* shape :
+         {"plane = {}", "plane = { offset = 0.02 }", "plane = { offset = 0.02 }\nmargin = 0.001",
+          "sphere = { centre = [0.03, 0.2, 0.03], radius = 0.1 }",
+          "plane = {}\npath = [[0, 0, -0.1, 0], [1, 0, 0, 0]]",
+          "polygon = { triangles = [[[-1, 0.05, -1], [1, 0.05, -1], [0, 0.05, 2]]] }"})
+        EXPECT_FALSE(has_note(run_for(body + std::string(shape) + "\n", 0), "at the start")) << shape;
 }
 
 // A soft block that its own weight turns inside out, with a tool that is far away.
@@ -546,7 +573,8 @@ TEST(Run, AToolThatMeetsNothingIsNamed) {
         run(scene({"tool.finger.from=[1, 1, 1]"}), {});
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("finger"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("tool.finger.from"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("--set"), std::string::npos);
     }
 }
 

@@ -103,6 +103,49 @@ TEST(Build, MissingFilesAreNamedWithTheirLineBeforeTheWork) {
         }
 }
 
+// The message that making a scene is refused with.
+std::string refusal(const std::string& text, const std::filesystem::path& folder = ".") {
+    try {
+        make(text, folder);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(Build, FilesOfAnotherKindAreNamedWithTheirLineAndWhatToWrite) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(0.05f), 12), scratch / "k.ply");
+    for (const char* name : {"v.nii", "s.toml", "bad.ply", "bad.csv", "bad.png"})
+        write_text(scratch / name, "x,y\n1\n");
+    std::filesystem::create_directory(scratch / "slices");
+    const std::string of = "[[body]]\nname = \"a\"\nstiffness = 5\nmass = 1\n";
+    const std::string liver = of + "surface = \"k.ply\"\n";
+    for (const auto& [text, line, words] : std::vector<std::array<std::string, 3>>{
+             {of + "surface = \"v.nii\"\n", "5", "which is a volume, in"},
+             {of + "surface = \"v.nii\"\n", "5", "write volume = \"v.nii\""},
+             {of + "volume = \"k.ply\"\n", "5", "write surface = \"k.ply\""},
+             {of + "surface = \"s.toml\"\n", "5", "which is a scene"},
+             {of + "surface = \"slices\"\n", "5", "which is a folder"},
+             {of + "surface = \"bad.ply\"\n", "5", "surface of body a: "},
+             {of + "volume = \"v.nii\"\n", "5", "volume of body a: "},
+             {liver + "[[body.region]]\nlabels = \"k.ply\"\nlabel = 1\nfactor = 2\n", "7", "name a volume"},
+             {liver + "[[collider]]\npolygon = { surface = \"s.toml\" }\n", "7",
+              "polygon.surface of collider 1 is s.toml"},
+             {liver + "[[collider]]\nfield = { surface = \"bad.ply\" }\n", "7",
+              "field.surface of collider 1: "},
+             {liver + "[[tool]]\npath = \"bad.csv\"\n", "7", "path: "},
+             {liver + "pin = { nodes = [1000000] }\n", "6", "pin.nodes names node 1000000"},
+             {liver + "weld = 1\n", "5", "weld is 1 m, and the whole surface is 0.1 m long"}}) {
+        const std::string said = refusal(text, scratch / ".");
+        EXPECT_NE(said.find(words), std::string::npos) << words << " in: " << said;
+        EXPECT_NE(said.find("test.toml, line " + line), std::string::npos) << said;
+    }
+    const Models coarse = make(liver + "spacing = 1\n", scratch / ".");
+    EXPECT_TRUE(has_note(coarse, "spacing is 1 m and the body 0.1 m long"));
+    EXPECT_FALSE(has_note(coarse, "more nodes"));
+}
+
 // A wall of a field that lies between its points is said, with a spacing that sees it; a thick one is not.
 TEST(Build, WallsThinnerThanTheFieldsSpacingAreANote) {
     Scratch scratch;

@@ -119,7 +119,8 @@ TEST(Scene, WrongTypesAndValuesAreNamed) {
     expect_words(refusal(""), {"no body"});
     expect_words(refusal("[[body"), {"line 1", "test.toml"});
     expect_words(refusal(small + "[[tool]]\n"), {"path"});
-    expect_words(refusal(small + "[[tool]]\npath = [[0, 0, 0, 0], [0, 1, 1, 1]]\n"), {"back in time"});
+    expect_words(refusal(small + "[[tool]]\npath = [[0, 0, 0, 0], [0, 1, 1, 1]]\n"),
+                 {"row 2", "repeats the time of the row before"});
     expect_words(refusal(small + "[[tool]]\npath = \"no-such.csv\"\n"), {"no-such.csv"});
     expect_words(refusal(small + "[[tool]]\nkind = \"drill\"\npath = [[0, 0, 0, 0]]\n"), {"drill", "press"});
     expect_words(refusal(small + "[camera]\nlook_at = \"heart\"\n"), {"heart"});
@@ -142,7 +143,13 @@ TEST(Scene, EveryNumberHasItsRangeAndItsUnit) {
              {"mass", "0", "0 kg, which is not above 0"},
              {"damping", "-1", "-1 1/s, which is negative"},
              {"link_damping", "-1", "-1 s, which is negative"},
-             {"spacing", "0", "0 m, which is not above 0"},
+             {"spacing", "0", "0 m, which is not from 1e-06 to 10000"},
+             {"spacing", "1e30", "cube.spacing is 1e+30 m, which is not from 1e-06 to 10000"},
+             {"spacing", "1e-30", "1e-30 m, which is not from 1e-06 to 10000"},
+             {"move", "[1e30, 0, 0]", "cube.move is 1e+30 m, which is not from"},
+             {"nodes", "9223372036854775807",
+              "is 9223372036854775807, not a whole number of a sensible size"},
+             {"cage", "[9007199254740993, 2, 2]", "9007199254740993, not a whole number of a sensible size"},
              {"nodes", "0", "not from 1"},
              {"size", "-1", "-1 m, which is negative"},
              {"faces", "-1", "negative"},
@@ -188,11 +195,34 @@ TEST(Scene, DecimalCommasAreExplained) {
     expect_words(refusal(small + "[[tool]]\npath = [[0,5, 0, 0, 0]]\n"), {"row 1", "with points in numbers"});
 }
 
+TEST(Scene, WhatPeopleWriteInsteadOfTomlIsExplained) {
+    const std::string body = "[[body]]\nname = \"cube\"\ndims = [4, 4, 4]\nspacing = 0.01\ndensity = 1000\n";
+    for (const auto& [line, words] : std::vector<std::array<std::string, 2>>{
+             {"youngs_modulus = 20 kPa", "write the number alone, without kPa: youngs_modulus is in Pa"},
+             {"youngs_modulus = 20,000", "with a point: 20.000, or 20000 if the comma parts thousands"},
+             {"youngs_modulus = \"20,000\"", "20.000, or 20000"},
+             {"damping = 0,250", "with a point: 0.250"},
+             {"mapping = constant", "write texts in quotes: mapping = \"constant\""},
+             {"move = [5; 5; 5]", "commas between the numbers in brackets"},
+             {"move = [5 5 5]", "commas between the numbers in brackets"},
+             {"solid = True", "write solid = true"},
+             {"damping = ", "correct the TOML there"}})
+        expect_words(refusal(body + line + "\n"), {words, "line 6"});
+}
+
+TEST(Scene, WhatAChangeSaysIsNotLookedForInTheFile) {
+    expect_words(refusal(small, {"body.cube.weld=1"}), {"weld beside dims", "in --set;"});
+    expect_words(refusal(small, {"collider.1={ sphere = {}, about = [0, 0, 0] }"}),
+                 {"about without a path", "in --set;"});
+    expect_words(refusal(small + "weld = 1\n"), {"weld beside dims", "in test.toml, line 8;"});
+}
+
 TEST(Scene, ColoursOf255AreExplained) {
     // 188 is half the light in sRGB.
     expect_words(refusal(small + "colour = [188, 255, 0]\n"),
                  {"cube.colour", "line 8", "[0.5, 1, 0]", "linear"});
-    expect_words(refusal(small + "colour = [-0.1, 0, 0]\n"), {"cube.colour", "from 0 to 1"});
+    expect_words(refusal(small + "colour = [-0.1, 0, 0]\n"), {"cube.colour is negative", "from 0 to 1"});
+    expect_words(refusal(small + "[light]\ncolour = [-1, 0, 0]\n"), {"light.colour is negative", "line 9"});
 }
 
 TEST(Scene, OfSeveralKeysOne) {
