@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <memory>
 
 namespace {
@@ -57,6 +58,8 @@ void import_file(ImportArguments& arguments) {
     check_mesh_name(arguments.out);
     check_output(arguments.out);
     check_output(arguments.report, ".json");
+    for (const std::filesystem::path output : {arguments.out, arguments.report})
+        check_not_input(output, std::array{std::filesystem::path(arguments.in)});
     const CleanSurface surface = make_surface(recipe, {}, terminal_progress());
     write_mesh(surface.mesh, arguments.out);
     end_progress();

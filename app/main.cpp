@@ -1,6 +1,7 @@
 #include "app/commands.h"
 #include "palpate/base/files.h"
 #include "palpate/base/halt.h"
+#include "palpate/base/nearest.h"
 #include "palpate/touch/emergency.h"
 
 #include <CLI/CLI.hpp>
@@ -24,6 +25,41 @@ void tidy(palpate::Halt halt) noexcept {
     if (halt == palpate::Halt::ended) palpate::remove_unfinished();
 }
 
+// An empty value is mostly a variable of the shell that is not set, and would pass for no option at all.
+void refuse_empty_values(CLI::App& app) {
+    for (CLI::App* command : app.get_subcommands({}))
+        for (CLI::Option* option : command->get_options())
+            option->check(CLI::Validator(
+                [](const std::string& value) {
+                    return value.empty() ? "nothing is given; give a value, or leave it out" : std::string();
+                },
+                ""));
+}
+
+// What to do about words that the command line does not know, if anything can be said.
+std::string remedy_for_unknown(const CLI::App& app) {
+    const CLI::App* command = &app;
+    while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+    std::vector<std::string> known;
+    std::string list;
+    for (const CLI::App* one : command->get_subcommands([](const CLI::App*) { return true; })) {
+        known.push_back(one->get_name());
+        list += (list.empty() ? "" : ", ") + one->get_name();
+    }
+    for (const CLI::Option* option : command->get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    const std::vector<std::string> words = app.remaining(true);
+    for (const std::string& word : words)
+        if (const std::string meant = palpate::nearest(word.substr(0, word.find('=')), known); !meant.empty())
+            return word + ": did you mean " + meant + "?\n";
+    if (words.empty() || list.empty()) return {};
+    return words.front() + " is none of " + list + "\n";
+}
+
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+    return remedy_for_unknown(*app) + CLI::FailureMessage::simple(app, error);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -39,6 +75,8 @@ int main(int argc, char** argv) {
     add_list(app);
     add_bench(app);
     add_doctor(app);
+    refuse_empty_values(app);
+    app.failure_message(usage_message);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {

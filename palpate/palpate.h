@@ -9,6 +9,7 @@
 #include "palpate/base/isolated.h"
 #include "palpate/base/memory.h"
 #include "palpate/base/names.h"
+#include "palpate/base/nearest.h"
 #include "palpate/base/progress.h"
 #include "palpate/base/realtime.h"
 #include "palpate/base/shared.h"

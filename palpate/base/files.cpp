@@ -129,6 +129,16 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
     write_file(path, [&](std::FILE* file) { std::fwrite(text.data(), 1, text.size(), file); });
 }
 
+namespace {
+
+// Begins a file and removes it at once: only that tells whether one can be written there.
+bool can_begin(const std::filesystem::path& path) {
+    const Unfinished trial(path);
+    return std::unique_ptr<std::FILE, Close>(std::fopen(trial.name().c_str(), "wb")) != nullptr;
+}
+
+}  // namespace
+
 void check_output(const std::filesystem::path& name, std::string_view ending) {
     if (name.empty()) return;
     std::error_code error;
@@ -138,14 +148,22 @@ void check_output(const std::filesystem::path& name, std::string_view ending) {
     if (is_special(path)) return;
     const std::string has = name.extension().string();
     auto alike = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
-    if (!ending.empty() && !has.empty() && !std::ranges::equal(has, ending, alike))
-        throw Error("cannot write \"" + has + "\"", name.string(),
+    if (!ending.empty() && !std::ranges::equal(has, ending, alike))
+        throw Error(has.empty() ? "no ending that says what it will hold" : "cannot write \"" + has + "\"",
+                    name.string(),
                     "name it " + std::filesystem::path(name).replace_extension(ending).string() +
                         ", which is what it will be");
     check_folder(path.parent_path(), path.filename().string());
-    const Unfinished trial(path);  // gone again at once
-    if (std::unique_ptr<std::FILE, Close> file(std::fopen(trial.name().c_str(), "wb")); !file)
+    if (!can_begin(path))
         fail("cannot write", path, "check that its folder may be written to, or name another");
+}
+
+void check_not_input(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(output, ignored)) return;
+    for (const std::filesystem::path& input : inputs)
+        if (std::filesystem::equivalent(output, input, ignored))
+            throw Error("an input of the run would be replaced", output.string(), "name another file");
 }
 
 void check_folder(const std::filesystem::path& folder, std::string_view wanted_for) {
@@ -161,6 +179,8 @@ void make_folder(const std::filesystem::path& folder) {
     if (error || !std::filesystem::is_directory(folder))
         throw Error("cannot create the folder (" + error.message() + ")", folder.string(),
                     "check that its parent may be written to and that no file has this name");
+    if (!can_begin(folder / "trial"))
+        fail("cannot write into the folder", folder, "check that it may be written to, or name another");
 }
 
 }  // namespace palpate

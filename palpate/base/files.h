@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -43,15 +44,20 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
 void write_text(const std::filesystem::path& path, std::string_view text);
 
 /// Says before the work what could not be written after it: throws Error if the file's folder is missing or
-/// closed to us, if a folder has its name, or if its name ends otherwise than `ending` (".svg"), which is
-/// what it will hold. A name without an ending is taken, and a device or a pipe may have any.
+/// closed to us, if a folder has its name, or if its name does not end in `ending` (".svg"), which is what it
+/// will hold. A device or a pipe may have any name.
 void check_output(const std::filesystem::path& path, std::string_view ending = {});
+
+/// Throws Error if writing there would replace one of these files, which are read: also by another name of
+/// the same file. A device or a pipe may be both.
+void check_not_input(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 /// Throws Error if there is no such folder; an empty path is the current one. `wanted_for`: what is to be in
 /// it, for the message.
 void check_folder(const std::filesystem::path& folder, std::string_view wanted_for);
 
-/// Creates a folder and its parents where they are missing. Throws Error if it cannot.
+/// Creates a folder and its parents where they are missing. Throws Error if it cannot, or if no file can be
+/// written in it.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace palpate

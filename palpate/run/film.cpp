@@ -27,8 +27,12 @@ std::vector<std::string> command(const std::filesystem::path& path, int width, i
 
 }  // namespace
 
-void check_film(const std::filesystem::path& path) {
+void check_film(const std::filesystem::path& path, int width, int height) {
+    constexpr int least = 16;  // pixels: a block of H.264
     check_output(path, ".mp4");
+    if (width < least || height < least)
+        throw Error(fmt::format("pictures of {} x {} pixels are too small for a film", width, height),
+                    path.string(), fmt::format("make them {0} x {0} or larger (--size {0}x{0})", least));
     if (!has_program("ffmpeg"))
         throw Error("cannot write a film without the program ffmpeg", path.string(),
                     "install ffmpeg, or ask for --images instead");
@@ -36,15 +40,15 @@ void check_film(const std::filesystem::path& path) {
 
 namespace {
 
-const std::filesystem::path& checked(const std::filesystem::path& path) {
-    check_film(path);
+const std::filesystem::path& checked(const std::filesystem::path& path, int width, int height) {
+    check_film(path, width, height);
     return path;
 }
 
 }  // namespace
 
 Film::Film(const std::filesystem::path& path, int width, int height, int frames_per_second)
-    : file_(checked(path)), ffmpeg_(command(file_.name(), width, height, frames_per_second)) {}
+    : file_(checked(path, width, height)), ffmpeg_(command(file_.name(), width, height, frames_per_second)) {}
 
 void Film::add(const Image& image) { ffmpeg_.write(image.pixels.data(), image.pixels.size()); }
 

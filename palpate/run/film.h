@@ -7,9 +7,9 @@
 
 namespace palpate {
 
-/// Throws Error if no film can be written there: without ffmpeg, or under a name that ends otherwise than
-/// ".mp4".
-void check_film(const std::filesystem::path& path);
+/// Throws Error if no film of so many pixels can be written there: without ffmpeg, under a name that does not
+/// end in ".mp4", or if it is smaller than 16 x 16.
+void check_film(const std::filesystem::path& path, int width, int height);
 
 /// An MP4 film written through the program ffmpeg. It takes its final name when finish() is called; without
 /// that nothing is left behind.

@@ -68,7 +68,9 @@ Json to_json(const Report::Tool& tool) {
 
 std::optional<double> Report::frames_per_second() const {
     const double busy = seconds.simulate + seconds.map + seconds.render;
-    const bool moves = std::ranges::any_of(bodies, [](const Body& body) { return body.nodes > 0; });
+    const bool moves = std::ranges::any_of(bodies, [](const Body& body) {
+        return body.nodes > body.pinned || body.largest_speed > 0;  // freely, or as a [[move]] says
+    });
     if (frames == 0 || !(busy > 0) || (!moves && tools.empty() && pictures == 0)) return std::nullopt;
     return frames / busy;
 }

@@ -4,6 +4,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/gl/context.h"
+#include "palpate/mesh/ending.h"
 #include "palpate/mesh/sequence.h"
 #include "palpate/mesh/write.h"
 #include "palpate/run/film.h"
@@ -40,27 +41,25 @@ void write_nodes(const std::vector<Model>& models, const std::vector<State>& sta
 }
 
 // The file of one skin: where there are several, its name is in the file's.
-std::filesystem::path file_of(std::size_t skin, const Models& made, std::filesystem::path path) {
-    const std::size_t models = made.models.size();
-    const std::string& name = skin < models ? made.models[skin].body.name : made.stills[skin - models].name;
-    if (models + made.stills.size() > 1)
+std::filesystem::path file_of(std::size_t skin, const Scene& scene, std::filesystem::path path) {
+    const std::size_t bodies = scene.bodies.size();
+    const std::string& name = skin < bodies ? scene.bodies[skin].name : scene.surfaces[skin - bodies].name;
+    if (bodies + scene.surfaces.size() > 1)
         path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
     return path;
 }
 
-void write_surfaces(const Models& made, const std::vector<Skin>& skins, const std::filesystem::path& path) {
+void write_surfaces(const Scene& scene, const std::vector<Skin>& skins, const std::filesystem::path& path) {
     for (std::size_t s = 0; s < skins.size(); ++s)
-        write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles}, file_of(s, made, path));
+        write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles}, file_of(s, scene, path));
 }
 
 // ---- what is written on the way ----
 
-// Of numbered files with these beginning and end, those that are not ours: an earlier run left them. Nothing
-// is removed that somebody may want to keep.
-void look_for_older(const std::filesystem::path& folder, const std::string& begin, const std::string& end,
-                    const std::set<std::string>& ours, std::vector<std::string>& notes) {
-    std::size_t count = 0;
-    std::string one;
+// The names of the numbered files with these beginning and end that a folder holds.
+std::vector<std::string> numbered_files(const std::filesystem::path& folder, const std::string& begin,
+                                        const std::string& end) {
+    std::vector<std::string> names;
     std::error_code error;
     std::filesystem::directory_iterator file(folder.empty() ? "." : folder, error);
     for (; !error && file != std::filesystem::directory_iterator(); file.increment(error)) {
@@ -68,7 +67,19 @@ void look_for_older(const std::filesystem::path& folder, const std::string& begi
         if (!name.starts_with(begin) || !name.ends_with(end) || name.size() <= begin.size() + end.size())
             continue;
         const std::string number = name.substr(begin.size(), name.size() - begin.size() - end.size());
-        if (number.size() < 4 || number.find_first_not_of("0123456789.") != number.npos) continue;
+        if (number.size() >= 4 && number.find_first_not_of("0123456789.") == number.npos)
+            names.push_back(name);
+    }
+    return names;
+}
+
+// Of those the ones that are not ours: an earlier run left them. Nothing is removed that somebody may want to
+// keep.
+void look_for_older(const std::filesystem::path& folder, const std::string& begin, const std::string& end,
+                    const std::set<std::string>& ours, std::vector<std::string>& notes) {
+    std::size_t count = 0;
+    std::string one;
+    for (const std::string& name : numbered_files(folder, begin, end)) {
         if (ours.contains(name)) continue;
         if (++count == 1 || name < one) one = name;
     }
@@ -81,14 +92,15 @@ void look_for_older(const std::filesystem::path& folder, const std::string& begi
 // The surfaces as they move, each in a sequence of its own.
 class MeshSequences {
  public:
-    MeshSequences(const RunSettings& settings, const Models& made, const Play& play, double duration) {
+    MeshSequences(const RunSettings& settings, const Scene& scene, const Models& made, const Play& play,
+                  double duration) {
         if (settings.sequence.empty()) return;
         const double frames_apart = std::round(std::clamp(settings.sequence_every / frame_seconds, 1.0, 1e9));
         apart_ = frames_apart * frame_seconds;
         const auto frames = std::size_t(std::ceil(duration / frame_seconds - 1e-6));
         for (std::size_t m = 0; m < made.models.size(); ++m) {
             const Mesh& rest = made.models[m].surface;
-            paths_.push_back(file_of(m, made, settings.sequence));
+            paths_.push_back(file_of(m, scene, settings.sequence));
             sequences_.push_back(make_sequence({rest.positions, play.skins()[m].normals, rest.triangles},
                                                paths_.back(), frames / std::size_t(frames_apart) + 1));
         }
@@ -216,6 +228,35 @@ void check_numbers(const RunSettings& settings) {
            "no time between the pictures of a sequence", "give seconds");
 }
 
+// A sequence that is one file, with the mesh at rest beside it or in it; other formats are numbered files.
+bool has_rest_beside(const std::filesystem::path& sequence) {
+    return ending(sequence) == ".pc2" || ending(sequence) == ".mdd";
+}
+bool has_rest_inside(const std::filesystem::path& sequence) { return ending(sequence) == ".glb"; }
+
+// Nothing that the run will write may replace what it reads.
+void check_inputs_stay(const Scene& scene, const RunSettings& settings) {
+    const std::vector<std::filesystem::path> inputs = find_files(scene);
+    auto check_numbered = [&](const std::filesystem::path& folder, const std::string& begin,
+                              const std::string& end) {
+        for (const std::string& name : numbered_files(folder, begin, end))
+            check_not_input(folder / name, inputs);
+    };
+    for (const auto* file : {&settings.video, &settings.report, &settings.plot, &settings.nodes})
+        check_not_input(*file, inputs);
+    for (std::size_t s = 0; !settings.surface.empty() && s < scene.bodies.size() + scene.surfaces.size(); ++s)
+        check_not_input(file_of(s, scene, settings.surface), inputs);
+    for (std::size_t m = 0; !settings.sequence.empty() && m < scene.bodies.size(); ++m) {
+        std::filesystem::path file = file_of(m, scene, settings.sequence);
+        if (has_rest_beside(file) || has_rest_inside(file))
+            check_not_input(file, inputs);
+        else
+            check_numbered(file.parent_path(), file.stem().string() + "-", file.extension().string());
+        if (has_rest_beside(file)) check_not_input(file.replace_extension(".obj"), inputs);
+    }
+    if (!settings.images.empty()) check_numbered(settings.images, scene.name + "-", "s.png");
+}
+
 // Says before the work what could not be written after it.
 void check_outputs(const Scene& scene, const RunSettings& settings) {
     check_numbers(settings);
@@ -229,9 +270,9 @@ void check_outputs(const Scene& scene, const RunSettings& settings) {
     if (!settings.images.empty()) {
         check_folder(std::filesystem::absolute(settings.images / ".").parent_path().parent_path(),
                      settings.images.string());
-        make_folder(settings.images);
+        make_folder(settings.images);  // other outputs may lie in it
     }
-    if (!settings.video.empty()) check_film(settings.video);
+    if (!settings.video.empty()) check_film(settings.video, settings.width, settings.height);
     check_output(settings.report, ".json");
     check_output(settings.plot, ".svg");
     check_output(settings.nodes, ".csv");
@@ -239,13 +280,13 @@ void check_outputs(const Scene& scene, const RunSettings& settings) {
     check_output(settings.sequence);
     if (!settings.surface.empty()) check_mesh_name(settings.surface);
     if (!settings.sequence.empty()) check_sequence_name(settings.sequence);
-    const std::string kind = settings.sequence.extension().string();
-    const bool with_rest = kind == ".pc2" || kind == ".mdd";  // in a file of its own
-    if (!settings.surface.empty() && (with_rest || kind == ".glb") &&
+    const bool beside = has_rest_beside(settings.sequence);
+    if (!settings.surface.empty() && (beside || has_rest_inside(settings.sequence)) &&
         settings.surface ==
-            std::filesystem::path(settings.sequence).replace_extension(with_rest ? ".obj" : kind))
+            (beside ? std::filesystem::path(settings.sequence).replace_extension(".obj") : settings.sequence))
         throw Error("the sequence writes a file of this name too", settings.surface.string(),
                     "name one of them differently");
+    check_inputs_stay(scene, settings);
 }
 
 }  // namespace
@@ -276,7 +317,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         report.renderer = show->renderer();
     }
     const Pace pace = pace_of(scene, settings, play);
-    MeshSequences sequences(settings, made, play, pace.duration);
+    MeshSequences sequences(settings, scene, made, play, pace.duration);
     report.seconds.build = now() - start;
 
     RestWatch watch(settings.until_rest, scene, made);
@@ -314,7 +355,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         report.bodies[m].elastic_energy = e.elastic;
     }
     if (!settings.nodes.empty()) write_nodes(made.models, states, settings.nodes);
-    if (!settings.surface.empty()) write_surfaces(made, play.skins(), settings.surface);
+    if (!settings.surface.empty()) write_surfaces(scene, play.skins(), settings.surface);
     if (!settings.plot.empty()) write_plot(report, settings.plot);
     report.seconds.total = now() - start;
     if (!settings.report.empty()) write_report(report, settings.report);

@@ -52,8 +52,9 @@ struct RunSettings {
 
 /// Runs a scene from its recipes to its files: build, then for each 1/60 s simulate, map, and draw if
 /// anything wants pictures. A run that diverges stops there: what was good is kept and written, and the
-/// report says so. Throws Error if the scene cannot be built, if a file cannot be written or would be named
-/// for what it is not, or if it would hold nothing: a plot without a tool.
+/// report says so. Throws Error if the scene cannot be built, if a file cannot be written, would be named for
+/// what it is not, or would replace one that the scene reads, or if it would hold nothing: a plot without a
+/// tool.
 Report run(const Scene& scene, const RunSettings& settings, const Progress& progress = {});
 
 }  // namespace palpate

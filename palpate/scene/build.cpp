@@ -452,7 +452,11 @@ void look_at_paths(const Scene& scene, Models& made) {
                 vec3(0));
 }
 
+}  // namespace
+
 // ---- files ----
+
+namespace {
 
 // A file of another kind than its key wants: "a volume", and what to write instead. Of none no kind.
 struct Mistaken {
@@ -479,22 +483,27 @@ const char* file_key(const ColliderRecipe& recipe) {
     return std::holds_alternative<Polygon>(recipe.collider.shape) ? "polygon.surface" : "field.surface";
 }
 
-// All files that a scene names are looked for before the work on the first begins.
-void find_files(const Scene& scene) {
+}  // namespace
+
+std::vector<std::filesystem::path> find_files(const Scene& scene) {
+    std::vector<std::filesystem::path> files = scene.path_files;
+    if (std::error_code error; std::filesystem::is_regular_file(scene.file, error))
+        files.push_back(scene.file);
     auto want = [&](const std::string& whose, const Lines& lines, const char* key, const std::string& file) {
         if (file.empty()) return;
         if (!is_found(file, scene.folder))
             throw Error(fmt::format("cannot find the {} of {}, {},", key, whose, file),
                         lines.where(key, scene.file), remedy_for_missing(file, scene.folder));
-        const Mistaken other = mistaken(key, file, find_data(file, scene.folder));
-        if (!other.kind.empty())
+        const std::filesystem::path found = find_data(file, scene.folder);
+        if (const Mistaken other = mistaken(key, file, found); !other.kind.empty())
             throw Error(fmt::format("{} of {} is {}, which is {},", key, whose, file, other.kind),
                         lines.where(key, scene.file), other.remedy);
+        files.push_back(found);
     };
     auto want_surface = [&](const std::string& whose, const BodyRecipe& recipe) {
+        std::vector<std::string> said_later;
         want(whose, recipe.lines, "volume", recipe.volume);
-        std::vector<std::string> none;  // of the notes on what stands in for what
-        want(whose, recipe.lines, "surface", with_surface(recipe, scene.folder, none).surface);
+        want(whose, recipe.lines, "surface", with_surface(recipe, scene.folder, said_later).surface);
         want(whose, recipe.lines, "colour_map", recipe.colour_map);
         want(whose, recipe.lines, "normal_map", recipe.normal_map);
         for (const Region& region : recipe.regions) want(whose, region.lines, "labels", region.labels);
@@ -505,7 +514,10 @@ void find_files(const Scene& scene) {
         const ColliderRecipe& collider = scene.colliders[i];
         want(fmt::format("collider {}", i + 1), collider.lines, file_key(collider), collider.surface);
     }
+    return files;
 }
+
+namespace {
 
 // ---- colliders ----
 
@@ -642,7 +654,7 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
 }  // namespace
 
 Models build(const Scene& scene, const Progress& progress) {
-    find_files(scene);
+    find_files(scene);  // before the work on the first begins
     return build_all(scene, nullptr, progress);
 }
 

@@ -4,6 +4,7 @@
 #include "palpate/mesh/image.h"
 #include "palpate/scene/scene.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,10 @@ struct Models {
     std::vector<std::string>
         notes;  // what the user should know: a count that was not met, a size that looks wrong
 };
+
+/// All files that a scene is made of: its own, where it has one, those of its paths, and those that build()
+/// will read. Throws Error if one is missing.
+std::vector<std::filesystem::path> find_files(const Scene& scene);
 
 /// Reads the files, makes surfaces, bodies, embeddings and colliders, and pins. Throws Error.
 Models build(const Scene& scene, const Progress& progress = {});

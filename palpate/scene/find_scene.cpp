@@ -1,5 +1,6 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
+#include "palpate/base/nearest.h"
 #include "palpate/mesh/ending.h"
 #include "palpate/mesh/read.h"
 #include "palpate/scene/scene.h"
@@ -9,10 +10,17 @@
 namespace palpate {
 namespace {
 
-std::string all_shipped() {
+// What to do where neither a scene nor a file has the name.
+std::string remedy_for_unknown(const std::string& name) {
     std::string list;
-    for (const ShippedScene& shipped : shipped_scenes()) list += (list.empty() ? "" : ", ") + shipped.name;
-    return list;
+    std::vector<std::string> names;
+    for (const ShippedScene& shipped : shipped_scenes()) {
+        list += (list.empty() ? "" : ", ") + shipped.name;
+        names.push_back(shipped.name);
+    }
+    const std::string meant = nearest(name, names);
+    return (meant.empty() ? "" : "did you mean " + meant + "? Or ") +
+           "give a scene (.toml), a mesh, a volume, or one of: " + list;
 }
 
 // A file's name as TOML writes it.
@@ -54,8 +62,7 @@ SceneText find_scene(const std::string& file_or_name) {
             return {shipped.text, shipped.name, std::filesystem::current_path()};
     std::error_code error;
     if (!std::filesystem::exists(file_or_name, error))
-        throw Error("no such scene or file", file_or_name,
-                    "give a scene (.toml), a mesh, a volume, or one of: " + all_shipped());
+        throw Error("no such scene or file", file_or_name, remedy_for_unknown(file_or_name));
     const std::filesystem::path file = file_or_name;
     const bool named_so = ending(file) == ".toml";
     if (!named_so && is_volume(file)) return scene_around("volume", std::filesystem::absolute(file));

@@ -21,14 +21,15 @@ const NumberRange length = between(1e-6, 1e4, "m");
 const NumberRange place = between(-1e6, 1e6, "m");
 
 // A path is the name of a file, or rows of numbers.
-void read_path_value(Reader& read, Path& path, Rows kind, const Scene& scene) {
+void read_path_value(Reader& read, Path& path, Rows kind, Scene& scene) {
     const toml::node* node = read.get("path");
     if (!node) return;
     if (const auto file = node->value_exact<std::string>()) {
         if (!is_found(*file, scene.folder))
             read.fail(*node, "cannot find the file " + *file, remedy_for_missing(*file, scene.folder));
+        scene.path_files.push_back(find_data(*file, scene.folder));
         try {
-            path = read_path(find_data(*file, scene.folder), kind);
+            path = read_path(scene.path_files.back(), kind);
         } catch (const Error& error) {
             throw Error(fmt::format("{}, path: {}", read.where(*node), error.what()));
         }
@@ -224,7 +225,7 @@ void read_shape(Reader& read, DistanceField& field, ColliderRecipe& recipe) {
     if (recipe.surface.empty()) read.fail("a field without a surface", "name a closed mesh");
 }
 
-void read_fields(Reader& read, ColliderRecipe& recipe, const Scene& scene) {
+void read_fields(Reader& read, ColliderRecipe& recipe, Scene& scene) {
     int shapes = 0;
     auto shape = [&](const char* key, auto one, auto... more) {
         read.table(key, [&](Reader& inside) {
@@ -254,7 +255,7 @@ void read_fields(Reader& read, ColliderRecipe& recipe, const Scene& scene) {
 
 // ---- what moves ----
 
-void read_fields(Reader& read, MoveRecipe& move, const Scene& scene) {
+void read_fields(Reader& read, MoveRecipe& move, Scene& scene) {
     move.lines = read.lines();
     read("body", move.body);
     read.table("nodes", [&](Reader& inside) { read_fields(inside, move.nodes); });
@@ -262,7 +263,7 @@ void read_fields(Reader& read, MoveRecipe& move, const Scene& scene) {
     read("about", move.about, place);
 }
 
-void read_fields(Reader& read, ToolRecipe& tool, const Scene& scene) {
+void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     tool.lines = read.lines();
     read("name", tool.name);
     read("kind", tool.kind);

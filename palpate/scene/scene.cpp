@@ -1,7 +1,7 @@
 #include "palpate/scene/scene.h"
 
 #include "palpate/base/error.h"
-#include "palpate/base/names.h"
+#include "palpate/base/nearest.h"
 
 #include <fmt/format.h>
 
@@ -45,15 +45,12 @@ bool is_found(const std::string& name, const std::filesystem::path& folder) {
 std::string remedy_for_missing(const std::string& name, const std::filesystem::path& folder) {
     const std::string wanted = std::filesystem::path(name).filename().string();
     const std::filesystem::path beside = (folder / name).parent_path();
-    std::string nearest;
-    int changes = 3;  // more letters make another name
+    std::vector<std::string> there;
     std::error_code error;
     for (const auto& file : std::filesystem::directory_iterator(beside.empty() ? "." : beside, error))
-        if (const int some = edits(file.path().filename().string(), wanted); some < changes) {
-            nearest = file.path().filename().string();
-            changes = some;
-        }
-    if (!nearest.empty()) return "did you mean " + nearest + "?";
+        there.push_back(file.path().filename().string());
+    if (const std::string meant = nearest(wanted, there); !meant.empty())
+        return "did you mean " + meant + "?";
     return "name it from the scene's folder, or set PALPATE_DATA to the folder that holds it; the brain and "
            "the "
            "head come with Debian's mricron-data, other meshes with scripts/get-data or from where their "

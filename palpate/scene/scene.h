@@ -207,6 +207,8 @@ struct Scene {
     std::vector<MoveRecipe> moves;
     std::vector<ToolRecipe> tools;
     std::vector<std::string> notes;  // what looks wrong in the file: a number whose unit may be another
+    /// The files that its paths were read from.
+    std::vector<std::filesystem::path> path_files;
 };
 
 /// Where up is: as the camera says, else against gravity, else along y. Unit.

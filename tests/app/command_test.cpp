@@ -340,7 +340,69 @@ TEST(Command, OutputsAreWhatTheirNamesSay) {
         expect_one_line(palpate("run box --report /proc/report.json"), {"/proc/report.json", "written to"});
     EXPECT_EQ(scratch.entries(), 1u);
     EXPECT_EQ(palpate("run box --frames 1 --report " + in("R.JSON")).status, 0);
-    EXPECT_EQ(palpate("run box --frames 1 --nodes " + in("nodes")).status, 0);  // it says nothing wrong
+    expect_one_line(palpate("run box --frames 1 --nodes " + in("nodes")), {"no ending", "nodes.csv"});
+    expect_one_line(palpate("run box --video " + in("v")), {"no ending", "v.mp4"});
+    expect_one_line(palpate("bench cloth --json " + in("b")), {"no ending", "b.json"});
+    if (std::filesystem::is_directory("/proc"))
+        expect_one_line(palpate("run box --images /proc"), {"/proc", "written to"});
+}
+
+TEST(Command, NoOutputReplacesAnInput) {
+    Scratch scratch;
+    auto in = [&](const std::string& name) { return (scratch / name).string(); };
+    write_mesh(block(vec3(0), vec3(0.1f)), scratch / "k.ply");
+    for (const char* name : {"z-0001.ply", "m.obj"}) write_mesh(block(vec3(0), vec3(0.1f)), scratch / name);
+    std::filesystem::create_symlink("k.ply", scratch / "link.ply");
+    write_text(scratch / "path.csv", "0, 0, 0.1, 0\n1, 0, 0, 0\n");
+    write_text(scratch / "s.toml",
+               "[[body]]\nname = \"b\"\nsurface = \"k.ply\"\nnodes = 50\nyoungs_modulus = 5000\ndensity = "
+               "1000\n[[tool]]\npath = \"path.csv\"\n");
+    std::filesystem::create_symlink("s.toml", scratch / "s.json");
+    const std::string before = read_text(scratch / "k.ply");
+    for (const std::string& arguments :
+         {"run " + in("k.ply") + " --frames 1 --surface " + in("k.ply"),
+          "run " + in("s.toml") + " --frames 1 --surface " + in("k.ply"),
+          "run " + in("s.toml") + " --frames 1 --surface " + in("link.ply"),
+          "run " + in("s.toml") + " --frames 1 --nodes " + in("path.csv"),
+          "run " + in("s.toml") + " --frames 1 --report " + in("s.json"),
+          "run " + in("z-0001.ply") + " --frames 1 --sequence " + in("z.ply"),
+          "run " + in("m.obj") + " --frames 1 --sequence " + in("m.pc2"),
+          "import " + in("k.ply") + " -o " + in("link.ply"), "import " + in("k.ply") + " -o " + in("k.ply")})
+        expect_one_line(palpate(arguments), {"an input of the run would be replaced", "name another file"});
+    EXPECT_EQ(read_text(scratch / "k.ply"), before);
+    EXPECT_EQ(scratch.entries(), 7u);
+    // What only looks alike is written, and what is no input is replaced.
+    for (int i = 0; i < 2; ++i)
+        EXPECT_EQ(palpate("run " + in("s.toml") + " --frames 1 --sequence " + in("k.ply")).status, 0);
+    EXPECT_EQ(read_text(scratch / "k.ply"), before);
+}
+
+TEST(Command, AnEmptyValueIsRefused) {
+    for (const char* arguments : {"run box --frames 1 --report ''", "run box --frames 1 --images ''",
+                                  "run box --frames 1 --backend ''", "run ''", "import x.ply -o ''",
+                                  "import x.ply -o y.ply --units ''", "bench cloth --json ''"}) {
+        const Outcome outcome = palpate(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments << outcome.said;
+        EXPECT_NE(outcome.said.find("nothing is given"), std::string::npos) << arguments << outcome.said;
+    }
+}
+
+TEST(Command, SaysWhatWasPerhapsMeant) {
+    expect_one_line(palpate("run brian --frames 1"), {"did you mean brain?"});
+    EXPECT_NE(palpate("run box --fames 5").said.find("did you mean --frames?"), std::string::npos);
+    EXPECT_NE(palpate("run box --fames=5").said.find("did you mean --frames?"), std::string::npos);
+    EXPECT_NE(palpate("lst").said.find("did you mean list?"), std::string::npos);
+    EXPECT_NE(palpate("list scene").said.find("did you mean scenes?"), std::string::npos);
+    EXPECT_NE(palpate("foo").said.find("foo is none of run, import, info, list"), std::string::npos);
+}
+
+TEST(Command, AFilmIsNotTooSmall) {
+    Scratch scratch;
+    const std::string film = (scratch / "one.mp4").string();
+    for (const char* size : {"1x1", "15x40", "40x15"})
+        expect_one_line(palpate(std::string("run box --frames 1 --video ") + film + " --size " + size),
+                        {"too small", "--size 16x16"});
+    EXPECT_EQ(scratch.entries(), 0u);
 }
 
 TEST(Command, OptionsThatChangeNothingAreSaid) {

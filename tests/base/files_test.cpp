@@ -126,7 +126,7 @@ TEST(Files, OutputsAreCheckedBeforeTheWork) {
     Scratch scratch;
     EXPECT_EQ(refusal(scratch / "a.svg", ".svg"), "accepted");
     EXPECT_EQ(refusal(scratch / "A.SVG", ".svg"), "accepted");
-    EXPECT_EQ(refusal(scratch / "a", ".svg"), "accepted");
+    EXPECT_NE(refusal(scratch / "a", ".svg").find("a.svg"), std::string::npos);
     EXPECT_EQ(refusal(scratch / "a.b", ""), "accepted");
     EXPECT_EQ(refusal("", ".svg"), "accepted");  // nothing is asked for
     EXPECT_NE(refusal(scratch / "a.png", ".svg").find("a.svg"), std::string::npos);
@@ -142,6 +142,21 @@ TEST(Files, OutputsAreCheckedBeforeTheWork) {
     if (std::filesystem::is_directory("/proc"))  // where nobody may write, not even root
         EXPECT_NE(refusal("/proc/a.svg", ".svg").find("cannot write"), std::string::npos);
     EXPECT_EQ(scratch.entries(), 3u);
+}
+
+TEST(Files, AnInputIsKnownByAnyOfItsNames) {
+    Scratch scratch;
+    write_text(scratch / "in", "text");
+    write_text(scratch / "same", "text");
+    std::filesystem::create_symlink(scratch / "in", scratch / "link");
+    std::filesystem::create_hard_link(scratch / "in", scratch / "hard");
+    const std::vector<std::filesystem::path> inputs = {scratch / "gone", scratch / "." / "in", "/dev/null"};
+    for (const char* name : {"in", "link", "hard"})
+        EXPECT_THROW(check_not_input(scratch / name, inputs), Error) << name;
+    for (const char* name : {"same", "gone", "new"})
+        EXPECT_NO_THROW(check_not_input(scratch / name, inputs)) << name;
+    EXPECT_NO_THROW(check_not_input("/dev/null", inputs));
+    EXPECT_NO_THROW(check_not_input("", inputs));
 }
 
 TEST(Error, IsAlwaysOneLine) {

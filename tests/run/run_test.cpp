@@ -221,6 +221,13 @@ TEST(Run, FramesPerSecondIsNothingWhereNothingMoves) {
                      .frames_per_second());
     EXPECT_NE(read_text(settings.report).find("\"frames_per_second\": null"), std::string::npos);
     EXPECT_GT(run(scene(), settings).frames_per_second().value(), 0);
+    const std::string pinned =
+        "[[body]]\nname = \"b\"\nsurface = \"ball.ply\"\nnodes = 50\nyoungs_modulus = 5000\n"
+        "density = 1000\npin = { below = 1 }\n";
+    EXPECT_FALSE(run(parse_scene(pinned, "p.toml", scratch / "."), settings).frames_per_second());
+    const std::string moved =
+        pinned + "[[move]]\nnodes = { below = 1 }\npath = [[0, 0, 0, 0], [1, 1, 0, 0]]\n";
+    EXPECT_GT(run(parse_scene(moved, "m.toml", scratch / "."), settings).frames_per_second().value_or(0), 0);
     settings.frames = 0;
     EXPECT_FALSE(run(scene(), settings).frames_per_second());
 }

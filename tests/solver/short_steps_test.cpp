@@ -87,6 +87,14 @@ TEST(ShortSteps, TheMaterialItselfWhereNothingElseIs) {
         material);
 }
 
+TEST(ShortSteps, ExplicitEulerWithoutDampingIsToldVerlet) {
+    Simulation simulation;
+    simulation.integrator = Integrator::explicit_euler;
+    const Body body = lattice({4, 4, 4}, 0.01f, Material{.youngs_modulus = 1e5f, .density = 1000});
+    expect_only(refusal(body, simulation), "choose verlet");
+    EXPECT_EQ(refusal(body, simulation).find("damping, or"), std::string::npos);
+}
+
 TEST(ShortSteps, TheIntegratorAndTheStepThatWasAskedFor) {
     Simulation simulation;
     simulation.integrator = Integrator::explicit_euler;
