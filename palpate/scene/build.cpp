@@ -452,11 +452,7 @@ void look_at_paths(const Scene& scene, Models& made) {
                 vec3(0));
 }
 
-}  // namespace
-
 // ---- files ----
-
-namespace {
 
 // A file of another kind than its key wants: "a volume", and what to write instead. Of none no kind.
 struct Mistaken {
