@@ -388,7 +388,7 @@ TEST_F(ReadNoted, SaysWhatItLeavesOutOfAMetaImage) {
     EXPECT_HAS(
         volume_error(scratch / "a.mha", "ObjectType = Tube\nNDims = 3\nNPoints = 3\nPoints =\n1 2 3\n"),
         "no image (its ObjectType is \"Tube\")");
-    EXPECT_HAS(volume_error(scratch / "a.mha", ""), "the file is empty");
+    EXPECT_HAS(volume_error(scratch / "a.mha", ""), "an empty file");
 }
 
 TEST_F(ReadNoted, TakesTheFirstOfSeveralVolumes) {

@@ -417,7 +417,7 @@ TEST(ReadVolume, RefusesMissingAndOtherFiles) {
 
 TEST(ReadVolume, SaysThatAFileIsEmptyOrCutOffInItsHeader) {
     Scratch scratch;
-    EXPECT_HAS(volume_error(scratch / "a.nii", ""), "the file is empty");
+    EXPECT_HAS(volume_error(scratch / "a.nii", ""), "an empty file");
     for (const std::size_t size : {4, 100, 347})
         EXPECT_HAS(volume_error(scratch / "a.nii", small().bytes().substr(0, size)),
                    "header that is cut off");

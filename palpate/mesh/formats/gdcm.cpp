@@ -173,7 +173,7 @@ double as_stored(std::uint16_t word, bool has_sign) {
 }
 
 // What turns stored numbers into values where slope and intercept do not: the Modality LUT.
-struct Table {
+struct LookUpTable {
     double first = 0;  // the stored number that its first value is for
     std::vector<float> values;
 
@@ -186,13 +186,13 @@ struct Table {
 const Tag tables(0x0028, 0x3000);
 
 // Without values if there is none, or if it is not whole.
-Table table_of(const DataSet& set, bool has_sign) {
+LookUpTable table_of(const DataSet& set, bool has_sign) {
     const DataSet* lut = item(set, tables, 0);
     if (!lut) return {};
     const auto head = words(*lut, Tag(0x0028, 0x3002)), data = words(*lut, Tag(0x0028, 0x3006));
     if (head.size() != 3) return {};
     const std::size_t count = head[0] == 0 ? 1 << 16 : head[0];
-    Table table{as_stored(head[1], has_sign), {}};
+    LookUpTable table{as_stored(head[1], has_sign), {}};
     if (data.size() >= count) {
         table.values.assign(data.begin(), data.begin() + std::ptrdiff_t(count));
     } else if (head[2] == 8 && data.size() == (count + 1) / 2) {  // two to a word, the first one low
@@ -257,7 +257,7 @@ Slice slice_of(const Attributes& says, const Slice& plain, bool has_sign) {
     slice.intercept = number(says(Tag(0x0028, 0x1052), values)).value_or(0);
     slice.doubts = doubts_of(says);
     if (const auto padding = padding_of(says.file, has_sign)) {
-        const Table table = table_of(says.file, has_sign);
+        const LookUpTable table = table_of(says.file, has_sign);
         auto value = [&](double stored) {
             return table.values.empty() ? stored * slice.slope + slice.intercept : double(table(stored));
         };
@@ -547,7 +547,7 @@ struct Pixels {
     std::filesystem::path file;
     std::vector<char> bytes;
     gdcm::PixelFormat format;
-    Table table;
+    LookUpTable table;
 };
 
 Pixels read_picture(const std::filesystem::path& file) {
