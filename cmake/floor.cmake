@@ -34,6 +34,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # nor need GCC look for garbage of its
     list(APPEND PALPATE_CODE "SHELL:--param ggc-min-heapsize=524288")
 endif()
 
+# Without any optimisation GCC calls, with wide registers, what knows only narrow ones: what it makes then is wrong.
+set(PALPATE_REGISTERS $<$<CONFIG:Debug>:-O1>)
+
 # What nearly every file includes is parsed once for all libraries, which saves a quarter of a build's time. It must be
 # compiled as they are: the libraries, not programs. The preset "debug" does without, so a file that does not include
 # what it needs does not compile there.
