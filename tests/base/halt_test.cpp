@@ -60,7 +60,8 @@ constexpr bool sanitized = true;  // whose own handlers end a process another wa
 constexpr bool sanitized = false;
 #endif
 
-volatile int* nowhere = nullptr;
+// Not null: a sanitizer would end the process before the store that is meant to crash.
+volatile int* nowhere = reinterpret_cast<volatile int*>(4096);
 
 int deeper(int n) {
     volatile char room[4096] = {};
