@@ -30,7 +30,7 @@ palpate_needs(OpenVDB)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 
 # scene, run
-palpate_needs(tomlplusplus)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET GLOBAL tomlplusplus)  # its CMake file knows the headers alone
 palpate_needs(nlohmann_json)
 
 set(CMAKE_MESSAGE_LOG_LEVEL "${palpate_log_level}")

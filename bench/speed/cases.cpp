@@ -2,7 +2,6 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/team.h"
-#include "palpate/body/cloth.h"
 #include "palpate/body/embedding.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
@@ -17,7 +16,6 @@ namespace palpate::speed {
 namespace {
 
 const Material tissue{.youngs_modulus = 10'000, .density = 1040, .damping = 5};
-const ClothSettings linen{.density = 0.15f, .damping = 2};
 
 Simulation with(Backend backend, int threads = 1, Integrator integrator = Integrator::verlet) {
     return {.backend = backend, .threads = threads, .integrator = integrator};

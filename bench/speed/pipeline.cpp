@@ -1,6 +1,5 @@
 // The tables of the 2012 paper, section 5.
 #include "bench/speed/drawing.h"
-#include "palpate/body/cloth.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +13,6 @@ namespace {
 constexpr int grids[] = {64, 128, 256, 512, 1024};
 constexpr double frame_step = 1e-5;  // s
 constexpr auto euler = Integrator::explicit_euler;
-
-const ClothSettings linen{.density = 0.15f, .damping = 2};
 
 std::string all_threads() {
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());

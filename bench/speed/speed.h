@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/body/body.h"
+#include "palpate/body/cloth.h"
 #include "palpate/body/simulation.h"
 #include "palpate/run/plot.h"
 
@@ -15,6 +16,9 @@ class Context;
 }
 
 namespace palpate::speed {
+
+/// What all measured cloths are of.
+inline const ClothSettings linen{.density = 0.15f, .damping = 2};
 
 /// What one run of something did.
 struct Work {

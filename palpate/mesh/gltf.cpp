@@ -10,19 +10,19 @@
 namespace palpate {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // glTF's numbers for kinds of things.
 constexpr int float_numbers = 5126, index_numbers = 5125, vertex_buffer = 34962, index_buffer = 34963;
 
-Json array(vec3 v) { return {v.x, v.y, v.z}; }
+OrderedJson array(vec3 v) { return {v.x, v.y, v.z}; }
 
 // The lists of a file, and what each new entry of theirs is called by: its number.
 struct Lists {
-    Json views = Json::array(), accessors = Json::array();
+    OrderedJson views = OrderedJson::array(), accessors = OrderedJson::array();
     std::uint64_t end = 0;  // of the views so far, bytes
 
-    int view(std::uint64_t bytes, Json more = Json::object()) {
+    int view(std::uint64_t bytes, OrderedJson more = OrderedJson::object()) {
         more["buffer"] = 0;
         more["byteOffset"] = end;
         more["byteLength"] = bytes;
@@ -50,16 +50,16 @@ struct Lists {
 };
 
 // Positions, and normals behind them, at an offset of a view.
-Json attributes(const GltfContents& contents, Lists& lists, int view, std::uint64_t offset,
-                const Bounds& box) {
-    Json json;
+OrderedJson attributes(const GltfContents& contents, Lists& lists, int view, std::uint64_t offset,
+                       const Bounds& box) {
+    OrderedJson json;
     json["POSITION"] = lists.positions(view, offset, contents.vertices, box);
     if (contents.normals)
         json["NORMAL"] = lists.vectors(view, offset + 12 * contents.vertices, contents.vertices);
     return json;
 }
 
-Json animation(const GltfContents& contents, Lists& lists) {
+OrderedJson animation(const GltfContents& contents, Lists& lists) {
     const std::size_t pictures = contents.times.size();
     const int times = lists.accessor(lists.view(4 * pictures), 0, float_numbers, pictures, "SCALAR");
     lists.accessors.back()["min"] = {contents.times.front()};
@@ -119,13 +119,13 @@ std::string gltf_binary(const Mesh& mesh) {
 std::string gltf_json(const GltfContents& contents, const std::string& uri) {
     Lists lists;
     const int triangles = lists.view(12 * contents.faces, {{"target", index_buffer}});
-    const Json vertices = {{"byteStride", 12}, {"target", vertex_buffer}};
+    const OrderedJson vertices = {{"byteStride", 12}, {"target", vertex_buffer}};
     const int rest = lists.view(contents.picture_bytes(), vertices);
-    Json primitive;
+    OrderedJson primitive;
     primitive["attributes"] = attributes(contents, lists, rest, 0, contents.box);
     primitive["indices"] = lists.accessor(triangles, 0, index_numbers, 3 * contents.faces, "SCALAR");
-    Json mesh;
-    Json animations;
+    OrderedJson mesh;
+    OrderedJson animations;
     if (const std::size_t pictures = contents.times.size()) {
         const int moved = lists.view(pictures * contents.picture_bytes(), vertices);
         for (std::size_t i = 0; i < pictures; ++i)
@@ -136,10 +136,10 @@ std::string gltf_json(const GltfContents& contents, const std::string& uri) {
     }
     mesh["primitives"].push_back(std::move(primitive));
 
-    Json file = {{"asset", {{"version", "2.0"}, {"generator", "Palpate"}}},
-                 {"scene", 0},
-                 {"scenes", {{{"nodes", {0}}}}},
-                 {"nodes", {{{"mesh", 0}}}}};
+    OrderedJson file = {{"asset", {{"version", "2.0"}, {"generator", "Palpate"}}},
+                        {"scene", 0},
+                        {"scenes", {{{"nodes", {0}}}}},
+                        {"nodes", {{{"mesh", 0}}}}};
     file["meshes"].push_back(std::move(mesh));
     if (!animations.empty()) file["animations"] = std::move(animations);
     file["accessors"] = std::move(lists.accessors);

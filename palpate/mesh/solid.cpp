@@ -14,12 +14,12 @@ namespace {
 using openvdb::FloatGrid;
 
 // How many voxels to either side have a distance of their own: OpenVDB's default.
-constexpr float band = 3;
+constexpr float level_set_band = 3;
 constexpr double most_bytes = 2e9;
 
 // Throws unless a grid all over the mesh's box would fit; the band alone takes less.
 void check_memory(vec3 size, float voxel) {
-    const dvec3 voxels = glm::ceil(dvec3(size) / double(voxel)) + 2.0 * (band + 1);
+    const dvec3 voxels = glm::ceil(dvec3(size) / double(voxel)) + 2.0 * (level_set_band + 1);
     const double bytes = voxels.x * voxels.y * voxels.z * sizeof(float);
     if (!(bytes <= most_bytes))
         throw Error(fmt::format("a distance grid of {:.0f} x {:.0f} x {:.0f} voxels, over 2 GB", voxels.x,
@@ -35,7 +35,7 @@ bool has_inside(const FloatGrid& grid) {
 }
 
 // Also true of no mesh at all.
-bool is_open(Mesh mesh) {
+bool is_open_when_welded(Mesh mesh) {
     weld(mesh);
     return mesh.triangles.empty() || soundness(mesh).open_edges > 0;
 }
@@ -68,10 +68,10 @@ SignedDistance::SignedDistance(const Mesh& mesh, float voxel) {
 
     openvdb::initialize();
     openvdb::util::NullInterrupter never;
-    auto grid =
-        openvdb::tools::meshToLevelSet<FloatGrid>(never, openvdb::math::Transform(), points, triangles, band);
+    auto grid = openvdb::tools::meshToLevelSet<FloatGrid>(never, openvdb::math::Transform(), points,
+                                                          triangles, level_set_band);
     // A closed sheet thinner than a voxel has no inside to be seen either, but nothing is wrong with it.
-    if (!has_inside(*grid) && is_open(mesh))
+    if (!has_inside(*grid) && is_open_when_welded(mesh))
         throw Error("nothing inside at this voxel size", "the mesh", "close its holes or use smaller voxels");
     grid_ = std::make_unique<Grid>(Grid{grid, low, voxel});
 }

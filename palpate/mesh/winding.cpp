@@ -8,7 +8,7 @@ namespace {
 
 // For each corner, the corner from which the one other face at this edge begins it, whichever way it runs;
 // none at a border, and where there are more than two.
-std::vector<Index> neighbours(const Mesh& mesh) {
+std::vector<Index> corners_beyond(const Mesh& mesh) {
     std::vector<Index> beyond(3 * mesh.triangles.size(), none);
     for_each_edge(Corners(mesh), [&](Index low, std::span<const Side> sides) {
         if (sides.size() != 2 || sides[0].other == low) return;
@@ -25,7 +25,7 @@ struct Turning {
 };
 
 Turning find_turning(const Mesh& mesh) {
-    const std::vector<Index> beyond = neighbours(mesh);
+    const std::vector<Index> beyond = corners_beyond(mesh);
     auto begins = [&](Index corner) { return mesh.triangles[corner / 3][corner % 3]; };
     Turning result{std::vector<char>(mesh.triangles.size()), {}};
     std::vector<char> seen(mesh.triangles.size());

@@ -28,8 +28,8 @@ const char* triangle_parts_glsl =
 #include "embedded/triangle_parts.glsl.h"
     ;
 
-constexpr GLuint group = 64;    // as in cull.comp
-constexpr float widest = 0.1f;  // the cosine of half the widest cone of normals that is made use of
+constexpr GLuint cull_group = 64;  // as in cull.comp
+constexpr float widest = 0.1f;     // the cosine of half the widest cone of normals that is made use of
 
 // As shaders read them: see the GLSL for what they mean.
 struct Cluster {
@@ -219,7 +219,7 @@ void Culling::find(const View& view, bool hides_backs, bool in_textures, float m
     program.set("hides_backs", hides_backs);
     program.set("moved", moved);
     program.use();
-    glDispatchCompute(GLuint(sizes_.size() + group - 1) / group, 1, 1);
+    glDispatchCompute(GLuint(sizes_.size() + cull_group - 1) / cull_group, 1, 1);
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

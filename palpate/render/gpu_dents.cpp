@@ -1,5 +1,7 @@
 #include "palpate/render/gpu_dents.h"
 
+#include "palpate/render/words.h"
+
 #include <array>
 
 namespace palpate {
@@ -10,12 +12,6 @@ const char* dent_glsl =
     ;
 const char* dent_inl =
 #include "embedded/dent.inl.h"
-    ;
-const char* words_glsl =
-#include "embedded/words.glsl.h"
-    ;
-const char* words_end_glsl =
-#include "embedded/words_end.glsl.h"
     ;
 
 // As std140 lays out the block of dent.glsl.

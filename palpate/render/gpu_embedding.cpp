@@ -1,6 +1,7 @@
 #include "palpate/render/gpu_embedding.h"
 
 #include "palpate/base/error.h"
+#include "palpate/render/words.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -31,12 +32,6 @@ const char* on_frames_glsl =
     ;
 const char* on_triangles_glsl =
 #include "embedded/on_triangles.glsl.h"
-    ;
-const char* words_glsl =
-#include "embedded/words.glsl.h"
-    ;
-const char* words_end_glsl =
-#include "embedded/words_end.glsl.h"
     ;
 
 constexpr int frames_group = 64;  // as in frames.comp

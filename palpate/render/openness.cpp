@@ -10,7 +10,7 @@ namespace {
 
 constexpr int lights = 64;
 constexpr int map_size = 512;
-constexpr int group = 256;  // as in openness.comp
+constexpr int openness_group = 256;  // as in openness.comp
 
 const char* openness_comp =
 #include "embedded/openness.comp.h"
@@ -70,7 +70,8 @@ gl::Buffer Openness::measure(const Mesh& mesh, const gl::Program& depth) const {
         gather_.use();
         gather_.set("to_shadow", to_texture(to_clip));
         gather_.set("to_light", to_light);
-        glDispatchCompute(static_cast<GLuint>((mesh.positions.size() + group - 1) / group), 1, 1);
+        glDispatchCompute(static_cast<GLuint>((mesh.positions.size() + openness_group - 1) / openness_group),
+                          1, 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
     }
     return openness;

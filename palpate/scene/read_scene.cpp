@@ -18,7 +18,7 @@ namespace {
 
 // What bodies are made of; and coordinates, as far as paths may lead.
 const NumberRange length = between(1e-6, 1e4, "m");
-const NumberRange place = between(-1e6, 1e6, "m");
+const NumberRange position = between(-1e6, 1e6, "m");
 
 // A path is the name of a file, or rows of numbers.
 void read_path_value(Reader& read, Path& path, Rows kind, Scene& scene) {
@@ -47,9 +47,9 @@ void read_path_value(Reader& read, Path& path, Rows kind, Scene& scene) {
 void read_fields(Reader& read, Choice& choice) {
     read("below", choice.below, between(0, 1, "", "0.15 is the lowest 15 %"));
     read("nodes", choice.nodes, zero_or_more("", "count nodes from 0"));
-    read("near", choice.near, place);
+    read("near", choice.near, position);
     read("radius", choice.radius, zero_or_more("m"));
-    read("box", choice.box, place);
+    read("box", choice.box, position);
 }
 
 // The moduli and stiffnesses of bodies and their regions. Brain has 1e3 to 1e4 Pa, steel 2e11.
@@ -112,7 +112,7 @@ void read_surface(Reader& read, BodyRecipe& body) {
     read("rotate", body.rotate);
     read("size", body.size, between(0, 1e4, "m", "0 leaves it as it is"));
     read("centre", body.centre);
-    read("move", body.move, place.usual(0, 100));
+    read("move", body.move, position.usual(0, 100));
     read("largest", body.largest);
     read("weld", body.repair.weld, zero_or_more("m"));
     read("specks", body.repair.specks,
@@ -166,23 +166,23 @@ const NumberRange extent = above_zero("m").usual(1e-5, 100);
 
 void read_shape(Reader& read, Plane& plane) {
     read("normal", plane.normal);
-    read("offset", plane.offset, place.usual(0, 100));
+    read("offset", plane.offset, position.usual(0, 100));
 }
 
 void read_shape(Reader& read, Sphere& sphere) {
-    read("centre", sphere.centre, place);
+    read("centre", sphere.centre, position);
     read("radius", sphere.radius, extent);
 }
 
 void read_shape(Reader& read, Capsule& capsule) {
-    read("from", capsule.from, place);
-    read("to", capsule.to, place);
+    read("from", capsule.from, position);
+    read("to", capsule.to, position);
     read("radius", capsule.radius, extent);
 }
 
 void read_shape(Reader& read, Box& box) {
     vec3 size(0), rotate(0);
-    read("centre", box.centre, place);
+    read("centre", box.centre, position);
     read("half", box.half, zero_or_more("m"));
     read("size", size, zero_or_more("m"));
     read("rotate", rotate);
@@ -199,7 +199,7 @@ void read_file(Reader& read, ColliderRecipe& recipe) {
     read("surface", recipe.surface);
     read("units", recipe.units);
     read("rotate", recipe.rotate);
-    read("move", recipe.move, place);
+    read("move", recipe.move, position);
 }
 
 void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe) {
@@ -246,7 +246,7 @@ void read_fields(Reader& read, ColliderRecipe& recipe, Scene& scene) {
     read("margin", recipe.collider.margin, zero_or_more("m").usual(0, 1));
     read.colour("colour", recipe.colour);
     read_path_value(read, recipe.path, Rows::poses, scene);
-    read("about", recipe.about, place);
+    read("about", recipe.about, position);
     read.finish();  // a misspelt shape is named as such
     if (shapes > 1) read.fail("a collider with two shapes", "write one [[collider]] for each");
     if (shapes == 0)
@@ -260,7 +260,7 @@ void read_fields(Reader& read, MoveRecipe& move, Scene& scene) {
     read("body", move.body);
     read.table("nodes", [&](Reader& inside) { read_fields(inside, move.nodes); });
     read_path_value(read, move.path, Rows::poses, scene);
-    read("about", move.about, place);
+    read("about", move.about, position);
 }
 
 void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
@@ -271,11 +271,11 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     read("device", tool.device);
     read("radius", tool.radius, above_zero("m", "a finger's tip has about 0.01 m").usual(1e-5, 1));
     read("stiffness", tool.stiffness, above_zero("N/m", "400 is usual").usual(1e-3, 1e6));
-    read("from", tool.from, place);
+    read("from", tool.from, position);
     read("along", tool.along);
     read("shaft", tool.shaft, zero_or_more("m").usual(0, 10));
     read("body", tool.body);
-    read("near", tool.near, place);
+    read("near", tool.near, position);
     read("relative", tool.relative);
     read.colour("colour", tool.colour);
     read_path_value(read, tool.path, Rows::places, scene);
@@ -326,7 +326,7 @@ void read_look_at(Reader& read, std::variant<std::monostate, vec3, std::string>&
 }
 
 void read_camera(Reader& read, Scene& scene) {
-    read("eye", scene.camera.eye, place);
+    read("eye", scene.camera.eye, position);
     read("up", scene.camera.up);
     read("angle", scene.camera.angle, between(0.01, 179, "degrees", "35 is usual"));
     read_look_at(read, scene.camera.look_at);

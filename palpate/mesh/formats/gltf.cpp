@@ -40,14 +40,14 @@ const Json& extension(const Json& object, std::string_view name) {
 constexpr std::string_view draco = "KHR_draco_mesh_compression", meshopt = "EXT_meshopt_compression",
                            instancing = "EXT_mesh_gpu_instancing",
                            texture_transform = "KHR_texture_transform", visibility = "KHR_node_visibility";
-constexpr std::string_view understood[] = {
+constexpr std::string_view understood_extensions[] = {
     draco, meshopt, instancing, texture_transform, visibility, "KHR_mesh_quantization"};
 constexpr std::string_view only_looks[] = {
     "KHR_materials_", "KHR_texture_", "EXT_texture_",   "MSFT_texture_",        "KHR_lights_",
     "EXT_lights_",    "KHR_xmp",      "KHR_animation_", "KHR_techniques_webgl", "KHR_technique_webgl"};
 
 bool may_be_required(std::string_view name) {
-    return std::ranges::count(understood, name) > 0 ||
+    return std::ranges::count(understood_extensions, name) > 0 ||
            std::ranges::any_of(only_looks, [&](std::string_view start) { return name.starts_with(start); });
 }
 

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-Number number_of(std::string type, const std::filesystem::path& path) {
+Number metaimage_number(std::string type, const std::filesystem::path& path) {
     constexpr std::pair<const char*, Number> all[] = {
         {"met_char", Number::int8},         {"met_uchar", Number::uint8},   {"met_short", Number::int16},
         {"met_ushort", Number::uint16},     {"met_int", Number::int32},     {"met_uint", Number::uint32},
@@ -72,7 +72,7 @@ bool says_yes(const Fields& fields, const char* name) { return fields[name].find
 
 Layout layout_of(const Fields& fields, const std::filesystem::path& path) {
     Layout layout;
-    layout.number = number_of(fields["elementtype"], path);
+    layout.number = metaimage_number(fields["elementtype"], path);
     layout.packing = says_yes(fields, "compresseddata")                            ? Packing::gzip
                      : fields.has("binarydata") && !says_yes(fields, "binarydata") ? Packing::text
                                                                                    : Packing::none;

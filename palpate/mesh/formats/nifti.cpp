@@ -232,7 +232,7 @@ Grid place_of(const Header& header, ivec3 dims, std::vector<std::string>& notes,
 
 // ---- the voxels ----
 
-std::optional<Number> number_of(int datatype) {
+std::optional<Number> nifti_number(int datatype) {
     constexpr std::pair<int, Number> kinds[] = {
         {2, Number::uint8},    {256, Number::int8},   {4, Number::int16},    {512, Number::uint16},
         {8, Number::int32},    {768, Number::uint32}, {16, Number::float32}, {1024, Number::int64},
@@ -265,7 +265,7 @@ ivec3 sizes_of(const Header& header, std::vector<std::string>& notes, const std:
 
 Layout layout_of(const Header& header, std::size_t voxels, std::vector<std::string>& notes,
                  const std::filesystem::path& path) {
-    const auto number = number_of(header.datatype);
+    const auto number = nifti_number(header.datatype);
     if (!number) refuse_type(header.datatype, path);
     Layout layout{.number = *number, .big_endian = header.big_endian, .voxels = voxels};
     if (!(header.offset >= 0 && header.offset < 1e15)) refuse("voxels that begin nowhere", path);

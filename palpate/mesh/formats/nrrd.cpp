@@ -172,7 +172,7 @@ double unit_of(const Fields& fields, const std::vector<Axis>& axes, const std::v
     return named_unit(names.empty() ? "" : names[0], notes);
 }
 
-Number number_of(const std::string& type, const std::filesystem::path& path) {
+Number nrrd_number(const std::string& type, const std::filesystem::path& path) {
     static const std::map<std::string, Number> all = {
         {"signed char", Number::int8},    {"int8", Number::int8},
         {"int8_t", Number::int8},         {"uchar", Number::uint8},
@@ -225,7 +225,7 @@ std::int64_t skipped(const Fields& fields, const char* name, std::int64_t least,
 
 Layout layout_of(const Fields& fields, std::vector<std::string>& notes, const std::filesystem::path& path) {
     Layout layout;
-    layout.number = number_of(fields["type"], path);
+    layout.number = nrrd_number(fields["type"], path);
     layout.packing = packing_of(small_letters(fields["encoding"]), path);
     layout.big_endian = small_letters(fields["endian"]) == "big";
     if (!fields.has("endian") && bytes_of(layout.number) > 1 && layout.packing != Packing::text)

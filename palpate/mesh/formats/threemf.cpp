@@ -26,9 +26,10 @@ constexpr int most_nested = 100;
 constexpr std::size_t bytes_an_object = 1000;
 
 // Extensions that a file may require: of the others we do not know what they do to the shape.
-constexpr std::string_view understood[] = {"http://schemas.microsoft.com/3dmanufacturing/production/",
-                                           "http://schemas.microsoft.com/3dmanufacturing/material/",
-                                           "http://schemas.microsoft.com/3dmanufacturing/trianglesets/"};
+constexpr std::string_view understood_namespaces[] = {
+    "http://schemas.microsoft.com/3dmanufacturing/production/",
+    "http://schemas.microsoft.com/3dmanufacturing/material/",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/"};
 
 // The files in an archive, by name without a slash in front.
 class Archive {
@@ -230,7 +231,7 @@ class ThreeMf {
         for (std::string_view prefix = word(required); !prefix.empty(); prefix = word(required)) {
             const std::string_view extension = model["xmlns:" + std::string(prefix)];
             const auto begins = [&](std::string_view start) { return extension.starts_with(start); };
-            if (std::ranges::none_of(understood, begins))
+            if (std::ranges::none_of(understood_namespaces, begins))
                 source_.broken("a 3MF that cannot be understood without the extension " +
                                    in_quotes(extension.empty() ? prefix : extension, 200) +
                                    ", which is not read,",

@@ -10,7 +10,7 @@ const char* pass_comp =
 
 constexpr int group = 64;  // as in pass.comp, where there are no tiles
 
-gl::Program program(const Text& text) {
+gl::Program compute_program(const Text& text) {
     const std::string whole = text.physics + pass_comp;
     return gl::Program({{GL_COMPUTE_SHADER, "pass.comp", whole}});
 }
@@ -21,7 +21,8 @@ ivec3 groups(const Text& text) {
 
 class Compute final : public Pipeline {
  public:
-    explicit Compute(const Text& text) : program_(program(text)), sums_(text.sums), groups_(groups(text)) {}
+    explicit Compute(const Text& text)
+        : program_(compute_program(text)), sums_(text.sums), groups_(groups(text)) {}
 
     void pass(const Fields& fields) override {
         fields.start.positions.bind(10);

@@ -20,7 +20,7 @@ struct TransformFeedbackKind {
 constexpr const char* captured[] = {"next_position", "next_velocity", "next_sum_position",
                                     "next_sum_velocity"};
 
-gl::Program program(const Text& text) {
+gl::Program feedback_program(const Text& text) {
     const std::string whole = text.physics + pass_vert;
     return gl::Program({{GL_VERTEX_SHADER, "pass.vert", whole}},
                        std::span(captured).first(text.sums ? 4 : 2));
@@ -30,7 +30,8 @@ gl::Program program(const Text& text) {
 // the vertex shader.
 class Feedback final : public Pipeline {
  public:
-    explicit Feedback(const Text& text) : program_(program(text)), sums_(text.sums), slots_(text.slots) {
+    explicit Feedback(const Text& text)
+        : program_(feedback_program(text)), sums_(text.sums), slots_(text.slots) {
         for (GLuint attribute = 0; attribute < attributes(); ++attribute) {
             glEnableVertexArrayAttrib(nodes_.name(), attribute);
             glVertexArrayAttribFormat(nodes_.name(), attribute, 4, GL_FLOAT, GL_FALSE, 0);

@@ -13,7 +13,7 @@ const char* whole_vert =
 #include "embedded/whole.vert.h"
     ;
 
-gl::Program program(const Text& text) {
+gl::Program fragment_program(const Text& text) {
     const std::string whole = text.physics + pass_frag,
                       corners = std::string("#version 450 core\n") + whole_vert;
     return gl::Program({{GL_VERTEX_SHADER, "whole.vert", corners}, {GL_FRAGMENT_SHADER, "pass.frag", whole}});
@@ -22,7 +22,7 @@ gl::Program program(const Text& text) {
 // The pipeline of 2005 (section 3.1): a triangle over the whole of a texture moves every node in it.
 class Fragment final : public Pipeline {
  public:
-    explicit Fragment(const Text& text) : program_(program(text)), sums_(text.sums) {}
+    explicit Fragment(const Text& text) : program_(fragment_program(text)), sums_(text.sums) {}
 
     void pass(const Fields& fields) override {
         fields.start.positions.bind(10);
