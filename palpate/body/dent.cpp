@@ -7,8 +7,6 @@ namespace palpate {
 namespace {
 
 using std::exp;
-using std::max;
-using std::min;
 
 #define FN
 #define select(c, a, b) ((c) ? (a) : (b))

@@ -5,18 +5,17 @@
 
 namespace palpate {
 
-/// A dent in a surface (Luciano, Banerjee and Rizzi 2007, section IV): each place on it moves against its
-/// normal by depth · exp(-d² / 2 width²), d being its distance from `centre`. Several add up. Distances are
-/// taken on the surface without any dents, wherever it is at the moment; that is where the contact point
-/// (Proxy) is too. They are straight, so that a near but unconnected part of the surface would be dented as
-/// well, as the paper says of itself; `facing` leaves out what looks another way, such as the far wall of a
-/// thin part.
+/// A dent in a surface (Luciano, Banerjee and Rizzi 2007, section IV): each place on it moves by
+/// depth · exp(-d² / 2 width²), d being its distance from `centre`. Several add up. Distances are taken on
+/// the surface without any dents, wherever it is at the moment; that is where the contact point (Proxy) is
+/// too. They are straight, so that a near but unconnected part of the surface is dented as well, as the paper
+/// says of itself. In the paper each place moves against its own normal, so that folds and thin parts come
+/// through themselves; where `facing` is set, all of it moves one way, and nothing does.
 struct Dent {
     vec3 centre = vec3(0);  // m
     float depth = 0;        // m; below 0 it is a bump
     float width = 0.01f;    // m, the standard deviation
-    vec3 facing =
-        vec3(0);  // unit: surface that looks within 60° of that is dented, from 90° on none; zero: all is
+    vec3 facing = vec3(0);  // unit, out of the surface: all moves against it; zero: against its own normal
 };
 
 /// How many of them a surface can have in a picture.
@@ -26,20 +25,19 @@ constexpr int most_dents = 64;
 /// beyond 1e9 m, or a width under 1e-9 m.
 bool acts(const Dent& dent);
 
-/// How deep all of them are at a place of the undented surface, m; `normal` is the surface's own there, unit.
+/// How far all of them move a place of the undented surface against its own normal there (unit), m.
 float depth_at(std::span<const Dent> dents, vec3 place, vec3 normal);
 
 /// Where that place is then; `normal` is the surface's own, unit.
 vec3 dented(std::span<const Dent> dents, vec3 place, vec3 normal);
 
-/// The dented surface's normal there, unit. Exact on a plane; where the surface itself is curved with a
-/// radius R, off by about depth / R of the turn (docs/results.md has the table).
+/// The dented surface's normal there, unit. Exact where dents face a way, and on a plane; elsewhere, where
+/// the surface is curved with a radius R, off by about depth / R of the turn (docs/results.md has the table).
 vec3 dented_normal(std::span<const Dent> dents, vec3 place, vec3 normal);
 
-/// How deep dents of that width may be all together, m: 1.2 times their width. A surface slopes by 36° in
-/// them then. Up to 1.65 widths (√e) no two places of space come together, if all of it moves one way; a
-/// surface's places move along its own normals, so it folds over where its radius is smaller than the dent is
-/// deep.
+/// How deep dents of that width may be all together, m: 1.2 times their width. A plane slopes by 36° in them
+/// then. Up to 1.65 widths (√e) no two places of space come together where all of it moves one way
+/// (`facing`): so whatever a surface is like, it can bear that.
 double deepest_dent(double width);
 
 /// How far they move any place at most, m.

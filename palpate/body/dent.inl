@@ -1,49 +1,54 @@
-// dent.inl: what dents make of a surface, written once for C++ and GLSL (Luciano, Banerjee and Rizzi 2007, section IV).
+// dent.inl: what dents make of a surface, written once for C++ and GLSL (Luciano, Banerjee and Rizzi 2007,
+// section IV).
 //
-// The words are GLSL's; C++ brings the same ones (dot, exp, normalize). In C++ this file is included inside a struct, in
-// GLSL at global scope, and finds there:
+// The words are GLSL's; C++ brings the same ones (cross, dot, exp, normalize). In C++ this file is included
+// inside a struct, in GLSL at global scope, and finds there:
 //   FN              what stands before a function
 //   Real, Real3     a number, a vector
 //   select(c, a, b) a where c holds, b elsewhere
 //   dent_count      how many dents there are
 //   dent(i)         one of them: its centre, depth, width and facing
-//   min, max        of two numbers
-// Places are always those of the surface without dents, so that all stages of a shader measure in the same space.
+// Places are always those of the surface without dents, so that all stages of a shader measure in the same
+// space.
 
 // How many widths from the middle of dent i.
 FN Real3 widths_away(int i, Real3 place) { return (place - dent(i).centre) * (Real(1.0f) / dent(i).width); }
 
-// How much of dent i a surface takes that looks this way.
-FN Real share_of(int i, Real3 normal) {
-    Real3 facing = dent(i).facing;
-    Real part = min(max(Real(2.0f) * dot(facing, normal), Real(0.0f)), Real(1.0f));
-    return select(dot(facing, facing) > Real(0.0f), part * part * (Real(3.0f) - Real(2.0f) * part), Real(1.0f));
-}
-
 FN Real depth_of(int i, Real3 away) { return dent(i).depth * exp(Real(-0.5f) * dot(away, away)); }
 
-// How deep all of them are.
-FN Real depth_at(Real3 place, Real3 normal) {
-    Real depth = Real(0.0f);
-    for (int i = 0; i < dent_count; ++i) depth += share_of(i, normal) * depth_of(i, widths_away(i, place));
-    return depth;
+// Against which way dent i moves a place.
+FN Real3 facing_of(int i, Real3 normal) {
+    Real3 facing = dent(i).facing;
+    return select(dot(facing, facing) > Real(0.0f), facing, normal);
 }
 
-// Which way that grows along the surface, and how fast.
-FN Real3 slope_at(Real3 place, Real3 normal) {
-    Real3 slope = Real3(0.0f, 0.0f, 0.0f);
-    for (int i = 0; i < dent_count; ++i) {
-        Real3 away = widths_away(i, place);
-        slope -= share_of(i, normal) * depth_of(i, away) * (Real(1.0f) / dent(i).width) * away;
-    }
-    return slope;
+// How far, and which way, all of them move a place.
+FN Real3 moved(Real3 place, Real3 normal) {
+    Real3 sum = Real3(0.0f, 0.0f, 0.0f);
+    for (int i = 0; i < dent_count; ++i) sum -= depth_of(i, widths_away(i, place)) * facing_of(i, normal);
+    return sum;
 }
 
-FN Real3 dented(Real3 place, Real3 normal) { return place - depth_at(place, normal) * normal; }
+FN Real depth_at(Real3 place, Real3 normal) { return -dot(moved(place, normal), normal); }
 
-// Turned towards where it gets deeper, by the arctangent of the slope along the surface: the paper's rotation, without an
-// angle, and without its axis, which has no direction at the contact. Dents too far off to matter leave the normal as it is.
+FN Real3 dented(Real3 place, Real3 normal) { return place + moved(place, normal); }
+
+// By the cofactors of the motion's Jacobian, whose columns are x, y and z: exact where dents say which way
+// they face. Where they move a surface along its own normals, those count as parallel; this is the paper's
+// rotation then, without an angle, and without its axis, which has no direction at the contact. Dents too far
+// off to matter leave the normal as it is, and so do those so deep that nothing is left of the surface.
 FN Real3 dented_normal(Real3 place, Real3 normal) {
-    Real3 slope = slope_at(place, normal);
-    return select(dot(slope, slope) > Real(0.0f), normalize(normal + (slope - dot(slope, normal) * normal)), normal);
+    Real3 x = Real3(1.0f, 0.0f, 0.0f), y = Real3(0.0f, 1.0f, 0.0f), z = Real3(0.0f, 0.0f, 1.0f);
+    for (int i = 0; i < dent_count; ++i) {
+        Real3 away = widths_away(i, place), facing = facing_of(i, normal);
+        Real3 slope = depth_of(i, away) * (Real(1.0f) / dent(i).width) * away;
+        x += slope.x * facing;
+        y += slope.y * facing;
+        z += slope.z * facing;
+    }
+    Real3 turned = normal.x * cross(y, z) + normal.y * cross(z, x) + normal.z * cross(x, y),
+          by = turned - normal;
+    Real size = dot(turned, turned);
+    return select(dot(by, by) > Real(0.0f) && size > Real(1e-12f) && size < Real(1e30f), normalize(turned),
+                  normal);
 }

@@ -2,6 +2,7 @@
 #include "palpate/body/dent.h"
 
 #include "bench/studies.h"
+#include "tests/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -21,27 +23,32 @@ class Dents : public ::testing::Test {
     vec3 any_vector(double size) { return vec3(any(-size, size), any(-size, size), any(-size, size)); }
     vec3 any_direction() { return glm::normalize(any_vector(1) + vec3(1e-3f)); }
 
-    std::vector<Dent> any_dents(int count, vec3 middle, const dvec3& along, const dvec3& across) {
+    std::vector<Dent> any_dents(int count, vec3 middle, const dvec3& along, const dvec3& across,
+                                vec3 facing) {
         std::vector<Dent> dents;
         for (int i = 0; i < count; ++i)
             dents.push_back({middle + vec3(any(-0.03, 0.03) * along + any(-0.03, 0.03) * across),
-                             float(any(-0.01, 0.02)), float(any(0.004, 0.02)),
-                             i % 2 ? any_direction() : vec3(0)});
+                             float(any(-0.01, 0.02)), float(any(0.004, 0.02)), i % 2 ? facing : vec3(0)});
         return dents;
     }
     std::mt19937 random_{11};
 };
 
-// The definition, in double.
-double depth(const std::vector<Dent>& dents, dvec3 place, dvec3 normal) {
-    double sum = 0;
+// The definition, in double: where a place of that normal comes to.
+dvec3 displaced(const std::vector<Dent>& dents, dvec3 place, dvec3 normal) {
+    dvec3 sum(0);
     for (const Dent& dent : dents) {
         const double d = glm::distance(place, dvec3(dent.centre));
-        const double t = std::clamp(2 * glm::dot(dvec3(dent.facing), normal), 0.0, 1.0);
-        const double share = dent.facing == vec3(0) ? 1 : t * t * (3 - 2 * t);
-        sum += share * dent.depth * std::exp(-d * d / (2.0 * dent.width * dent.width));
+        sum += dent.depth * std::exp(-d * d / (2.0 * dent.width * dent.width)) *
+               (dent.facing == vec3(0) ? normal : dvec3(dent.facing));
     }
-    return sum;
+    return place - sum;
+}
+
+// Two that are a right-handed system with the normal.
+std::pair<dvec3, dvec3> axes_beside(dvec3 n) {
+    const dvec3 along = glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+    return {along, glm::cross(n, along)};
 }
 
 double degrees_between(dvec3 a, dvec3 b) {
@@ -50,47 +57,80 @@ double degrees_between(dvec3 a, dvec3 b) {
 
 TEST_F(Dents, AreGaussiansThatAddUp) {
     for (int trial = 0; trial < 200; ++trial) {
-        const std::vector<Dent> dents = any_dents(trial % 9, any_vector(0.1), {1, 0, 0}, {0, 0, 1});
+        const std::vector<Dent> dents =
+            any_dents(trial % 9, any_vector(0.1), {1, 0, 0}, {0, 0, 1}, any_direction());
         const vec3 place = (dents.empty() ? vec3(0) : dents.front().centre) + any_vector(0.05),
                    normal = any_direction();
-        const double deep = depth(dents, place, normal);
+        const dvec3 there = displaced(dents, place, normal);
+        const double deep = glm::dot(dvec3(place) - there, dvec3(normal));
         EXPECT_LE(std::abs(depth_at(dents, place, normal) - deep), 2e-6 * (furthest(dents) + 1e-3));
-        EXPECT_LE(glm::distance(dvec3(dented(dents, place, normal)), dvec3(place) - deep * dvec3(normal)),
-                  3e-8);
-        EXPECT_LE(std::abs(deep), 1.0001 * furthest(dents));
+        EXPECT_LE(glm::distance(dvec3(dented(dents, place, normal)), there), 3e-8);
+        EXPECT_LE(glm::distance(dvec3(place), there), 1.0001 * furthest(dents));
     }
 }
 
-TEST_F(Dents, LeaveOutWhatLooksAnotherWay) {
-    const Dent dent{vec3(0), 0.01f, 0.01f, vec3(0, 1, 0)};
-    auto deep = [&](float degrees) {
-        const float a = glm::radians(degrees);
-        return depth_at({&dent, 1}, vec3(0), vec3(std::sin(a), std::cos(a), 0));
+// A wall of 2 mm, and one of folds as high and as narrow: pressed as deep as may be, 8 mm.
+TEST_F(Dents, ThatFaceAWayPushNothingThroughItself) {
+    const float width = 0.007f, depth = float(deepest_dent(width));
+    auto turned_over = [&](const Mesh& mesh, bool one_way) {
+        const Dent dent{vec3(0), depth, width, one_way ? vec3(0, 0, 1) : vec3(0)};
+        std::vector<vec3> at;
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+            at.push_back(dented({&dent, 1}, mesh.positions[v], mesh.normals[v]));
+        auto way = [](const std::vector<vec3>& p, uvec3 t) {
+            return glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]);
+        };
+        int turned = 0;
+        for (uvec3 t : mesh.triangles) turned += !(glm::dot(way(mesh.positions, t), way(at, t)) > 0);
+        return turned;
     };
-    for (float all : {0.0f, 30.0f, -59.9f}) EXPECT_EQ(deep(all), 0.01f);
-    for (float none : {90.1f, 120.0f, 180.0f}) EXPECT_EQ(deep(none), 0);
-    EXPECT_GT(deep(70), deep(80));
+    Mesh folds = block(vec3(-0.03f, -0.03f, -0.004f), vec3(0.03f, 0.03f, -0.002f), 120);
+    for (vec3& p : folds.positions) p.z += 0.002f * std::sin(1500 * p.x) * std::cos(1200 * p.y + 300 * p.x);
+    compute_normals(folds);
+    EXPECT_EQ(turned_over(folds, true), 0);
+    EXPECT_GE(turned_over(folds, false), 100);  // as in the paper
+
+    const Dent one_way[] = {{vec3(0), depth, width, vec3(0, 0, 1)}}, own[] = {{vec3(0), depth, width}};
+    for (float x : {0.0f, 0.004f, 0.012f}) {
+        const vec3 front(x, 0, 0), back(x, 0, -0.002f), out(0, 0, 1);
+        EXPECT_GT(dented(one_way, front, out).z, dented(one_way, back, -out).z) << x;
+        if (x == 0) EXPECT_LT(dented(own, front, out).z, dented(own, back, -out).z);
+    }
+}
+
+// Of any motion of space they are exact, so on whatever surface.
+TEST_F(Dents, NormalsOfOnesThatFaceAWayAreThoseOfFiniteDifferences) {
+    double most = 0;
+    for (int trial = 0; trial < 500; ++trial) {
+        const vec3 place = any_vector(0.2), normal = any_direction();
+        std::vector<Dent> dents;
+        for (int i = 0; i < 1 + trial % 4; ++i)
+            dents.push_back({place + any_vector(0.015), float(any(-0.004, 0.004)), 0.01f, any_direction()});
+        const auto [along, across] = axes_beside(normal);
+        const double h = 1e-6;
+        auto at = [&](dvec3 step) { return displaced(dents, dvec3(place) + step, normal); };
+        const dvec3 there = glm::cross(at(h * along) - at(-h * along), at(h * across) - at(-h * across));
+        const double off = degrees_between(dvec3(dented_normal(dents, place, normal)), there);
+        if (!(off <= most)) most = off;
+    }
+    EXPECT_LE(most, 0.01);
 }
 
 TEST_F(Dents, NormalsOfADentedPlaneAreThoseOfFiniteDifferences) {
     double most = 0, steepest = 0;
     for (int trial = 0; trial < 500; ++trial) {
         const vec3 middle = any_vector(0.2), normal = any_direction();
-        const dvec3 n(normal);
-        const dvec3 along =
-                        glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))),
-                    across = glm::cross(n, along);
-        const std::vector<Dent> dents = any_dents(1 + trial % 7, middle, along, across);
+        const auto [along, across] = axes_beside(normal);
+        const std::vector<Dent> dents = any_dents(1 + trial % 7, middle, along, across, normal);
         const vec3 place = middle + vec3(any(-0.04, 0.04) * along + any(-0.04, 0.04) * across);
-        auto displaced = [&](dvec3 p) { return p - depth(dents, p, n) * n; };
+        auto at = [&](dvec3 step) { return displaced(dents, dvec3(place) + step, normal); };
         const double h = 1e-6;
-        const dvec3 p(place), there = glm::cross(displaced(p + h * along) - displaced(p - h * along),
-                                                 displaced(p + h * across) - displaced(p - h * across));
+        const dvec3 there = glm::cross(at(h * along) - at(-h * along), at(h * across) - at(-h * across));
         const vec3 ours = dented_normal(dents, place, normal);
         EXPECT_LE(std::abs(glm::length(ours) - 1), 1e-6f);
         const double off = degrees_between(dvec3(ours), there);
         if (!(off <= most)) most = off;
-        steepest = std::max(steepest, degrees_between(there, n));
+        steepest = std::max(steepest, degrees_between(there, normal));
     }
     EXPECT_LE(most, 0.01);
     EXPECT_GE(steepest, 45);  // there was something to get right
