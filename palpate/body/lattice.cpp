@@ -260,13 +260,16 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
     check(mesh, "the surface of a lattice");
     check_stiffness(settings.material);
     check_mass(settings.material);
+    if (!(settings.spacing >= 0 && std::isfinite(settings.spacing)) ||
+        (settings.spacing == 0 && settings.nodes < 1))
+        throw Error(fmt::format("{} nodes, or a spacing of {} m", settings.nodes, settings.spacing),
+                    "the lattice", "ask for 1 node or more, or for a spacing above zero");
     const Bounds box = bounds(mesh);
     const double volume = std::abs(palpate::volume(mesh));
     if (!(volume > 0))
         throw Error("a surface that encloses no volume", "the lattice", "close it, or use a cloth");
 
-    float spacing =
-        settings.spacing > 0 ? settings.spacing : float(std::cbrt(volume / std::max(settings.nodes, 1)));
+    float spacing = settings.spacing > 0 ? settings.spacing : float(std::cbrt(volume / settings.nodes));
     frame_around(box, spacing);  // refuses what would be too large before anything is built
     const SignedDistance distance(mesh, spacing / samples);
     auto fill_at = [&](float h) {
@@ -321,7 +324,7 @@ namespace {
 
 Body plain_box(ivec3 dims, float spacing, std::vector<Link> links, const Material& material, bool equal) {
     const dvec3 size(dims);
-    if (std::min({dims.x, dims.y, dims.z}) < 0 || size.x * size.y * size.z > most_cells)
+    if (std::min({dims.x, dims.y, dims.z}) < 1 || size.x * size.y * size.z > most_cells)
         throw Error(fmt::format("{} x {} x {} nodes", dims.x, dims.y, dims.z), "the lattice",
                     "use fewer than 30 million, and 1 or more along each axis");
     if (!(spacing > 0 && std::isfinite(spacing)))

@@ -45,7 +45,10 @@ void check_step(const Body& body, const Simulation& simulation, double frequency
 
 int steps_within(double seconds, double longest) {
     const double steps = std::ceil(seconds / longest - 1e-6);  // a hair of rounding is not worth a step
-    return int(std::clamp(steps, 1.0, 1e9));
+    if (!(steps <= 1e9))
+        throw Error(fmt::format("{:.3g} steps of {:.3g} s for {:.3g} s", steps, longest, seconds),
+                    "a call of step()", "step by less at once");
+    return int(std::max(steps, 1.0));
 }
 
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,

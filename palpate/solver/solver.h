@@ -26,7 +26,8 @@ struct Stats {
     std::vector<dvec3> pulls;  // N s, one a drag, likewise
 };
 
-/// How many equal steps, none longer than `longest`, fill a time; at least one.
+/// How many equal steps, none longer than `longest`, fill a time; at least one. Throws Error
+/// where they would be more than a billion.
 int steps_within(double seconds, double longest);
 
 /// Owns a body's moving state on one backend and moves it. What happens in a step never throws, unless a
@@ -36,7 +37,7 @@ class Solver {
     virtual ~Solver() = default;
 
     /// Moves the body on by `seconds`, in equal steps no longer than the chosen one. Throws Error, and
-    /// nothing has moved, where `seconds` is not above zero, more act than most_presses or most_drags, an
+    /// nothing has moved, where `seconds` is not above zero or would be more than a billion steps, more act than most_presses or most_drags, an
     /// influence is not finite or names a node that the body does not have, or colliders have not one motion
     /// each.
     virtual Stats step(double seconds, const Influences& influences = {}) = 0;

@@ -63,6 +63,7 @@ TEST(Refusal, OfMeshesThatDoNotHold) {
         expect_refused("distance", [&] { SignedDistance(mesh, 0.05f); });
         expect_refused("mesh.stl", [&] { write_mesh(mesh, scratch / "mesh.stl"); });
     }
+    expect_refused("triangles", [&] { write_mesh(Mesh{}, scratch / "mesh.ply"); });
     Mesh plain = ellipsoid(vec3(0.1f), 6);
     expect_refused("texture coordinates", [&] { compute_tangents(plain); });
     expect_refused("tolerance", [&] { weld(plain, none); });
@@ -78,12 +79,16 @@ TEST(Refusal, OfNumbersOfWhichNothingCanBeMade) {
         expect_refused("the material", [&] { lattice(mesh, {.spacing = 0.05f, .material = odd}); });
         if (odd != Material{}) expect_refused("the material", [&] { lattice({3, 3, 3}, 0.01f, odd); });
     }
+    for (const LatticeSettings& odd :
+         {LatticeSettings{.nodes = 0, .material = tissue}, LatticeSettings{.spacing = -1, .material = tissue},
+          LatticeSettings{.spacing = none, .material = tissue}})
+        expect_refused("spacing", [&] { lattice(mesh, odd); });
     // A box of which nothing is said is a cage that somebody else moves.
     const Body cage = lattice({3, 3, 3}, 0.1f, {});
     for (float inverse : cage.inverse_mass) EXPECT_EQ(inverse, 0);
     EXPECT_NO_THROW(embed(mesh, cage));
     expect_refused("the material", [] { lattice({3, 3, 3}, 0.01f, SpringKinds{1, 1, 1}, {}); });
-    for (ivec3 dims : {ivec3(-1, 3, 3), ivec3(1 << 20)})
+    for (ivec3 dims : {ivec3(-1, 3, 3), ivec3(0, 5, 5), ivec3(1 << 20)})
         expect_refused("nodes", [&] { lattice(dims, 0.01f, tissue); });
     for (float spacing : {0.0f, -1.0f, none}) {
         expect_refused("spacing", [&] { lattice({3, 3, 3}, spacing, tissue); });

@@ -333,7 +333,7 @@ TEST_F(Gpu, ComputesInTilesAndWithout) {
 }
 
 TEST_P(EveryGpu, TakesABodyOfNoNodes) {
-    for (const Body& body : {lattice({0, 0, 0}, 0.01f, tissue), Body{}}) {
+    for (const Body& body : {Body{}, net({}, {}, {})}) {
         auto solver = make_solver(body, {.backend = GetParam()}, context());
         EXPECT_FALSE(solver->step(0.01).diverged);
         EXPECT_TRUE(solver->nodes().positions.empty());

@@ -72,6 +72,7 @@ TEST_P(Refuses, WhatCannotActOnABodyOrBePutBack) {
         expect_refused(word, [&] { solver->step(seconds, influences); });
     };
     for (double seconds : {0.0, -1.0, double(none), double(endless)}) refused("above 0 s", {}, seconds);
+    refused("step by less", {}, 1e9);
 
     const std::vector<Press> presses(most_presses + 1);
     refused("8 presses", {.presses = presses});
