@@ -229,6 +229,15 @@ void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const Sc
             "add a [[body]]");
 }
 
+void check(const CameraRecipe& camera, const std::set<std::string>& names, const SceneSource& source) {
+    const std::string where = camera.lines.where("look_at", source.file);
+    if (const auto* at = std::get_if<std::string>(&camera.look_at); at && !names.contains(*at))
+        throw Error("camera.look_at names no body or surface: " + *at, where,
+                    "name one of them, or give a point");
+    if (const auto* at = std::get_if<vec3>(&camera.look_at); at && camera.eye == *at)
+        throw Error("camera.look_at is where its eye is", where, "look at another point");
+}
+
 // ---- all of it ----
 
 // Names become parts of file names and cells of tables.
@@ -271,15 +280,10 @@ void check(Scene& scene, const SceneSource& source) {
         check_name(scene.tools[i].name, scene.tools[i].lines, source);
         check(scene.tools[i], bodies, source);
     }
-    if (scene.tools.size() > 8) source.fail(0, "more than 8 tools", "use fewer");
-    if (scene.colliders.size() > 16) source.fail(0, "more than 16 colliders", "use fewer");
-    if (const auto* at = std::get_if<std::string>(&scene.camera.look_at); at && !names.contains(*at))
-        source.fail(0, "camera.look_at names no body or surface: " + *at,
-                    "name one of them, or give a point");
-    if (const auto& up = scene.camera.up; up && !(glm::length(*up) > 0))
-        source.fail(0, "camera.up is zero", "give it a direction, such as [0, 1, 0]");
-    if (!(glm::length(scene.light.direction) > 0))
-        source.fail(0, "light.direction is zero", "give it a direction, such as [0, -1, 0]");
+    if (scene.tools.size() > 8) source.fail(scene.tools[8].lines.table, "more than 8 tools", "use fewer");
+    if (scene.colliders.size() > 16)
+        source.fail(scene.colliders[16].lines.table, "more than 16 colliders", "use fewer");
+    check(scene.camera, names, source);
 }
 
 }  // namespace palpate

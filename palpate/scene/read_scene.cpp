@@ -327,7 +327,7 @@ void read_look_at(Reader& read, std::variant<std::monostate, vec3, std::string>&
 
 void read_camera(Reader& read, Scene& scene) {
     read("eye", scene.camera.eye, position);
-    read("up", scene.camera.up);
+    read.direction("up", scene.camera.up, "[0, 1, 0]");
     read("angle", scene.camera.angle, between(0.01, 179, "degrees", "35 is usual"));
     read_look_at(read, scene.camera.look_at);
     std::string projection = scene.camera.orthographic ? "orthographic" : "perspective";
@@ -336,6 +336,7 @@ void read_camera(Reader& read, Scene& scene) {
         read.wrong("projection", *read.get("projection"), "a projection",
                    "choose perspective or orthographic");
     scene.camera.orthographic = projection == "orthographic";
+    scene.camera.lines = read.lines();
 }
 
 void read_fields(Reader& read, Scene& scene) {
@@ -362,7 +363,7 @@ void read_fields(Reader& read, Scene& scene) {
     read.table_or_none("camera", [&](Reader& inside) { read_camera(inside, scene); });
     scene.light.direction = upright(sky(scene)) * scene.light.direction;
     read.table_or_none("light", [&](Reader& inside) {
-        inside("direction", scene.light.direction);
+        inside.direction("direction", scene.light.direction, "[0, -1, 0]");
         inside.colour("colour", scene.light.colour, 10);
     });
     read.each("body", [&](Reader& inside) { read_fields(inside, scene.bodies.emplace_back()); });

@@ -188,6 +188,7 @@ struct CameraRecipe {
     std::optional<vec3> up;        // else against gravity
     float angle = Camera{}.angle;  // degrees
     bool orthographic = false;
+    Lines lines;
 };
 
 /// All that a scene's file says.

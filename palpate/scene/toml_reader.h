@@ -143,6 +143,18 @@ class Reader {
         check(key, *node, range);
     }
 
+    /// A direction, of any length but zero.
+    template <class Vector>
+    void direction(const char* key, Vector& value, const char* example) {
+        const toml::node* node = get(key);
+        if (!node) return;
+        vec3 read_one(0);
+        read(key, *node, read_one);
+        if (!(glm::length(read_one) > 0))
+            fail(*node, full(key) + " is zero", fmt::format("give it a direction, such as {}", example));
+        value = read_one;
+    }
+
     /// A colour: linear light from 0 to `most`.
     void colour(const char* key, vec3& value, float most = 1) {
         const toml::node* node = get(key);
