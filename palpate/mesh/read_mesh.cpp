@@ -3,6 +3,7 @@
 #include "palpate/mesh/ending.h"
 #include "palpate/mesh/formats/budget.h"
 #include "palpate/mesh/formats/formats.h"
+#include "palpate/mesh/formats/stranger.h"
 #include "palpate/mesh/read.h"
 
 #include <fmt/format.h>
@@ -27,30 +28,17 @@ constexpr Format own_formats[] = {{".ply", read_ply},  {".obj", read_obj},   {".
                                   {".x3dz", read_x3d}, {".x3db", read_x3d},  {".x3dv", read_vrml},
                                   {".wrl", read_vrml}, {".wrz", read_vrml},  {".vrml", read_vrml}};
 
-// What stands at the beginning of a file that is no mesh at all, whatever its name says.
-struct Stranger {
+// How volumes begin, whatever their names say.
+struct VolumeSign {
     std::string_view start, what, remedy;
     std::size_t at = 0;  // where it stands
 };
 
-constexpr Stranger strangers[] = {
-    {"version https://git-lfs", "a Git LFS pointer, not the file itself,", "fetch it with git lfs pull"},
-    {"<!DOCTYPE html", "a web page, not a mesh,", "download the file itself"},
-    {"<!doctype html", "a web page, not a mesh,", "download the file itself"},
-    {"<html", "a web page, not a mesh,", "download the file itself"},
-    {"NRRD000", "an NRRD volume, not a mesh,", "name it .nrrd"},
-    {"ObjectType = Image", "a MetaImage volume, not a mesh,", "name it .mha or .mhd"},
-    {std::string_view("n+1\0", 4), "a NIfTI volume, not a mesh,", "name it .nii", 344},
-    {std::string_view("n+2\0", 4), "a NIfTI volume, not a mesh,", "name it .nii", 4},
-    {"DICM", "a DICOM file, not a mesh,", "name it .dcm", 128},
-    {"ISO-10303-21", "a STEP file, which has no triangles,", "export it as .stl"},
-    {"BZh", "a file packed by bzip2", "unpack it first"},
-    {"\xfd"
-     "7zXZ",
-     "a file packed by xz", "unpack it first"},
-    {"\x28\xb5\x2f\xfd", "a file packed by zstd", "unpack it first"},
-    {"7z\xbc\xaf\x27\x1c", "a 7z archive", "unpack it first"},
-    {"Rar!\x1a\x07", "a RAR archive", "unpack it first"}};
+constexpr VolumeSign volume_signs[] = {{"NRRD000", "an NRRD volume", "name it .nrrd"},
+                                       {"ObjectType = Image", "a MetaImage volume", "name it .mha or .mhd"},
+                                       {std::string_view("n+1\0", 4), "a NIfTI volume", "name it .nii", 344},
+                                       {std::string_view("n+2\0", 4), "a NIfTI volume", "name it .nii", 4},
+                                       {"DICM", "a DICOM file", "name it .dcm", 128}};
 
 constexpr std::string_view zip = "PK\3\4", gzip = "\x1f\x8b";
 constexpr std::string_view zipped_formats[] = {".3mf", ".3d", ".zae", ".q3o", ".pk3"};
@@ -84,18 +72,19 @@ std::string_view ending_by(std::string_view bytes) {
     return {};
 }
 
-void refuse_strangers(std::string_view bytes, const std::string& format, const std::string& name) {
+void refuse_other_kinds(std::string_view bytes, const std::string& format, const std::string& name) {
     if (bytes.empty()) throw Error("an empty file", name, "get the file again");
-    for (const Stranger& stranger : strangers)
-        if (bytes.substr(std::min(stranger.at, bytes.size())).starts_with(stranger.start))
-            throw Error(stranger.what, name, stranger.remedy);
+    refuse_strangers(bytes, name);
+    for (const auto& [start, what, remedy, at] : volume_signs)
+        if (bytes.substr(std::min(at, bytes.size())).starts_with(start))
+            throw Error(fmt::format("{}, not a mesh,", what), name, remedy);
     if (bytes.starts_with(zip) && ending_by(bytes) != ".3mf" &&
         std::ranges::count(zipped_formats, format) == 0)
         throw Error("a ZIP archive", name, "unpack it first");
 }
 
 Draft read_draft(const Source& source, const std::string& format) {
-    refuse_strangers(source.whole(), format, source.name());
+    refuse_other_kinds(source.whole(), format, source.name());
     const Format* const named = own_format(format);
     const std::string_view ending = ending_by(source.whole());
     const Format* const meant = own_format(ending);

@@ -1,5 +1,6 @@
 #include "palpate/base/error.h"
 #include "palpate/mesh/ending.h"
+#include "palpate/mesh/formats/stranger.h"
 #include "palpate/mesh/formats/units.h"
 #include "palpate/mesh/formats/volumes.h"
 #include "palpate/mesh/read.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <new>
 #include <string>
 #include <utility>
@@ -111,9 +113,13 @@ const Format* format_of(const std::filesystem::path& path) {
 
 Reading read_anywhere(const std::filesystem::path& path) {
     const Format* format = format_of(path);
-    if (std::error_code unreadable; std::filesystem::is_regular_file(path, unreadable) &&
-                                    std::filesystem::file_size(path, unreadable) == 0)
-        refuse("an empty file", path, "get the file again");
+    if (std::error_code unreadable; std::filesystem::is_regular_file(path, unreadable)) {
+        std::string first(500, ' ');
+        std::ifstream(path, std::ios::binary).read(first.data(), std::streamsize(first.size()));
+        if (std::filesystem::file_size(path, unreadable) == 0)
+            refuse("an empty file", path, "get the file again");
+        refuse_strangers(first, path.string());
+    }
     if (format && std::filesystem::is_directory(path))
         refuse("a folder where a file was expected", path, "name a file");
     if (format) return format->read(path);

@@ -48,7 +48,8 @@ std::string remedy_for_missing(const std::string& name, const std::filesystem::p
     std::vector<std::string> there;
     std::error_code error;
     for (const auto& file : std::filesystem::directory_iterator(beside.empty() ? "." : beside, error))
-        there.push_back(file.path().filename().string());
+        if (file.exists(error))
+            there.push_back(file.path().filename().string());  // no link that leads nowhere
     if (const std::string meant = nearest(wanted, there); !meant.empty())
         return "did you mean " + meant + "?";
     return "name it from the scene's folder, or set PALPATE_DATA to the folder that holds it; the brain and "

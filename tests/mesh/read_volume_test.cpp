@@ -411,6 +411,11 @@ TEST(ReadVolume, RefusesMissingAndOtherFiles) {
     EXPECT_HAS(error_of(scratch / "a.nii", [&] { read_volume(scratch / "a.nii"); }), "cannot open");
     EXPECT_HAS(volume_error(scratch / "a.mha", small().bytes()), "no MetaImage header");
     EXPECT_HAS(volume_error(scratch / "a.gz", small().bytes()), "use .nii, .hdr and .img");
+    for (const char* name : {"a.nii", "a.nii.gz", "a.nrrd", "a.mhd"}) {
+        EXPECT_HAS(volume_error(scratch / name, "<!DOCTYPE html><html>"), "a web page") << name;
+        EXPECT_HAS(volume_error(scratch / name, "version https://git-lfs.github.com/spec/v1"),
+                   "git lfs pull");
+    }
     std::filesystem::create_directory(scratch / "folder.nii");
     EXPECT_HAS(error_of(scratch / "folder.nii", [&] { read_volume(scratch / "folder.nii"); }), "folder");
 }
