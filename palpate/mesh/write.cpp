@@ -128,8 +128,6 @@ void check_mesh_name(const std::filesystem::path& path) { format_of(path); }
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
     check(mesh, path.string());
-    if (mesh.triangles.empty())
-        throw Error("a mesh without triangles", path.string(), "write one that has some");
     write_text(path, format_of(path).text(mesh, path.string()));
 }
 

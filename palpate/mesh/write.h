@@ -15,8 +15,8 @@ void check_mesh_name(const std::filesystem::path& path);
 /// - `.vtp`: VTK's XML PolyData, its numbers appended as raw bytes;
 /// - `.glb`, `.gltf`: glTF 2.0, in one file; normals are made unit.
 ///
-/// Whole or not at all. Throws Error if the file cannot be written, if there are no triangles, or if its format
-/// cannot hold the mesh: glTF at most 2 GB.
+/// Whole or not at all. Throws Error if the file cannot be written, or its format cannot hold the mesh: glTF
+/// wants triangles, and at most 2 GB.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 }  // namespace palpate

@@ -63,7 +63,6 @@ TEST(Refusal, OfMeshesThatDoNotHold) {
         expect_refused("distance", [&] { SignedDistance(mesh, 0.05f); });
         expect_refused("mesh.stl", [&] { write_mesh(mesh, scratch / "mesh.stl"); });
     }
-    expect_refused("triangles", [&] { write_mesh(Mesh{}, scratch / "mesh.ply"); });
     Mesh plain = ellipsoid(vec3(0.1f), 6);
     expect_refused("texture coordinates", [&] { compute_tangents(plain); });
     expect_refused("tolerance", [&] { weld(plain, none); });
