@@ -66,22 +66,15 @@ Place world_of(const aiNode& node) {
 // Empty if the mesh has no bones, or one that is no node.
 std::vector<Place> carried(const aiScene& scene, const aiMesh& mesh, const Place& node) {
     if (!mesh.HasBones()) return {};
-    std::vector<Place> places(mesh.mNumVertices, Place{dmat3(0), dvec3(0)});
-    std::vector<double> sums(mesh.mNumVertices, 0);
+    MeanPlaces places(mesh.mNumVertices);
     for (const aiBone* bone : std::span(mesh.mBones, mesh.mNumBones)) {
         const aiNode* const joint = scene.mRootNode->FindNode(bone->mName);
         if (!joint) return {};
         const Place place = world_of(*joint) * place_of(bone->mOffsetMatrix);
-        for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights)) {
-            if (w.mVertexId >= places.size()) continue;
-            places[w.mVertexId].turn += double(w.mWeight) * place.turn;
-            places[w.mVertexId].move += double(w.mWeight) * place.move;
-            sums[w.mVertexId] += double(w.mWeight);
-        }
+        for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
+            if (w.mVertexId < mesh.mNumVertices) places.add(w.mVertexId, place, double(w.mWeight));
     }
-    for (std::size_t i = 0; i < places.size(); ++i)
-        places[i] = sums[i] > 0 ? Place{places[i].turn / sums[i], places[i].move / sums[i]} : node;
-    return places;
+    return std::move(places).take(node);
 }
 
 // A mesh may hang on several nodes, each of which places it.

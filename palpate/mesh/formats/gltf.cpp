@@ -704,18 +704,10 @@ class Gltf {
         return values;
     }
 
-    // For each vertex the mean of its joints' places, by weight.
+    // Where the joints carry each vertex; the first of them, one that is on none.
     std::vector<Place> carry(const Json& attributes, const std::vector<Place>& bones, std::size_t count) {
         budget_.spend(count, sizeof(Place));
-        std::vector<Place> places(count, Place{dmat3(0), dvec3(0)});
-        std::vector<double> sums(count, 0);
-        const auto add = [&](std::size_t i, double joint, double weight) {
-            if (!is_whole(joint, 0, double(bones.size()) - 1))
-                broken(fmt::format("a vertex on joint {} of {}", joint, bones.size()));
-            places[i].turn += weight * bones[std::size_t(joint)].turn;
-            places[i].move += weight * bones[std::size_t(joint)].move;
-            sums[i] += weight;
-        };
+        MeanPlaces places(count);
         for (int set = 0;; ++set) {
             const Json& joints = field(attributes, fmt::format("JOINTS_{}", set));
             const Json& shares = field(attributes, fmt::format("WEIGHTS_{}", set));
@@ -723,15 +715,14 @@ class Gltf {
             const auto on = vectors_of<glm::dvec4>(joints), by = vectors_of<glm::dvec4>(shares);
             if (on.size() != count || by.size() != count) broken("a skin of another number of vertices");
             for (std::size_t i = 0; i < count; ++i)
-                for (int k = 0; k < 4; ++k)
-                    if (by[i][k] != 0) add(i, on[i][k], by[i][k]);
+                for (int k = 0; k < 4; ++k) {
+                    if (by[i][k] == 0) continue;
+                    if (!is_whole(on[i][k], 0, double(bones.size()) - 1))
+                        broken(fmt::format("a vertex on joint {} of {}", on[i][k], bones.size()));
+                    places.add(i, bones[std::size_t(on[i][k])], by[i][k]);
+                }
         }
-        for (std::size_t i = 0; i < count; ++i) {
-            if (!(sums[i] > 0)) places[i] = Place{dmat3(0), dvec3(0)}, sums[i] = 0, add(i, 0, 1);
-            places[i].turn /= sums[i];
-            places[i].move /= sums[i];
-        }
-        return places;
+        return std::move(places).take(bones[0]);
     }
 
     // Which texture coordinates a primitive's picture takes, and where they are turned to.

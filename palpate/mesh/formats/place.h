@@ -2,7 +2,10 @@
 #include "palpate/base/vectors.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace palpate {
 
@@ -30,6 +33,31 @@ struct Place {
 inline bool mostly_mirrored(std::span<const Place> places) {
     return 2 * std::size_t(std::ranges::count_if(places, &Place::mirrors)) > places.size();
 }
+
+/// Where bones carry vertices: each to the mean of its bones' places, by weight.
+class MeanPlaces {
+ public:
+    explicit MeanPlaces(std::size_t vertices)
+        : sums_(vertices, Place{dmat3(0), dvec3(0)}), weights_(vertices, 0.0) {}
+
+    void add(std::size_t vertex, const Place& bone, double weight) {
+        sums_[vertex].turn += weight * bone.turn;
+        sums_[vertex].move += weight * bone.move;
+        weights_[vertex] += weight;
+    }
+
+    /// One a vertex; `otherwise` where its weights are not more than 0 in all.
+    std::vector<Place> take(const Place& otherwise) && {
+        for (std::size_t i = 0; i < sums_.size(); ++i)
+            sums_[i] =
+                weights_[i] > 0 ? Place{sums_[i].turn / weights_[i], sums_[i].move / weights_[i]} : otherwise;
+        return std::move(sums_);
+    }
+
+ private:
+    std::vector<Place> sums_;  // times weight
+    std::vector<double> weights_;
+};
 
 /// What stands at `inner` in a part that itself stands at `outer`.
 inline Place operator*(const Place& outer, const Place& inner) {
