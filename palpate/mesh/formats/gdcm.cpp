@@ -11,6 +11,7 @@
 #include <gdcmReader.h>
 #include <gdcmSequenceOfItems.h>
 #include <gdcmUIDs.h>
+#include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -30,6 +31,10 @@ using gdcm::Tag;
 using Json = nlohmann::json;
 
 const Tag pixels(0x7fe0, 0x0010);
+
+// The sequences in which a file with several pictures keeps what others say outright.
+const Tag pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145),
+    plane_position(0x0020, 0x9113), plane_orientation(0x0020, 0x9116);
 
 // ---- what a header says ----
 
@@ -123,12 +128,11 @@ std::optional<dmat3> direction_of(const std::string& text) {
 }
 
 void find_spacing(const Attributes& says, Slice& slice) {
-    const Tag measures(0x0028, 0x9110);
     const std::pair<const char*, Tag> sources[] = {{"PixelSpacing", Tag(0x0028, 0x0030)},
                                                    {"ImagerPixelSpacing", Tag(0x0018, 0x1164)},
                                                    {"NominalScannedPixelSpacing", Tag(0x0018, 0x2010)}};
     for (const auto& [name, tag] : sources) {
-        const auto n = numbers(says(tag, measures));
+        const auto n = numbers(says(tag, pixel_measures));
         if (n.size() < 2 || !(n[0] > 0 && n[1] > 0)) continue;
         slice.spacing = dvec2(n[1], n[0]);  // the first is from row to row
         slice.spacing_source = name;
@@ -167,6 +171,8 @@ std::vector<std::uint16_t> words(const DataSet& set, const Tag& tag) {
     std::memcpy(all.data(), value->GetPointer(), all.size() * sizeof(std::uint16_t));
     return all;
 }
+
+bool is_signed(const gdcm::PixelFormat& format) { return format.GetPixelRepresentation() == 1; }
 
 double as_stored(std::uint16_t word, bool has_sign) {
     return has_sign ? double(std::int16_t(word)) : double(word);
@@ -210,21 +216,24 @@ std::optional<dvec2> padding_of(const DataSet& set, bool has_sign) {
     return dvec2(std::min(a, b), std::max(a, b));
 }
 
+double value_of(double stored, const Slice& slice, const LookUpTable& table) {
+    return table.values.empty() ? stored * slice.slope + slice.intercept : double(table(stored));
+}
+
 // Numbers of a slice that are written wrongly.
 std::vector<std::string> doubts_of(const Attributes& says) {
-    const Tag measures(0x0028, 0x9110), values(0x0028, 0x9145);
     const struct {
         const char* name;
         Tag tag, group;
         std::size_t count;
-    } all[] = {{"ImagePositionPatient", Tag(0x0020, 0x0032), Tag(0x0020, 0x9113), 3},
-               {"ImageOrientationPatient", Tag(0x0020, 0x0037), Tag(0x0020, 0x9116), 6},
-               {"PixelSpacing", Tag(0x0028, 0x0030), measures, 2},
-               {"SliceThickness", Tag(0x0018, 0x0050), measures, 1},
-               {"SpacingBetweenSlices", Tag(0x0018, 0x0088), measures, 1},
-               {"SliceLocation", Tag(0x0020, 0x1041), measures, 1},
-               {"RescaleSlope", Tag(0x0028, 0x1053), values, 1},
-               {"RescaleIntercept", Tag(0x0028, 0x1052), values, 1}};
+    } all[] = {{"ImagePositionPatient", Tag(0x0020, 0x0032), plane_position, 3},
+               {"ImageOrientationPatient", Tag(0x0020, 0x0037), plane_orientation, 6},
+               {"PixelSpacing", Tag(0x0028, 0x0030), pixel_measures, 2},
+               {"SliceThickness", Tag(0x0018, 0x0050), pixel_measures, 1},
+               {"SpacingBetweenSlices", Tag(0x0018, 0x0088), pixel_measures, 1},
+               {"SliceLocation", Tag(0x0020, 0x1041), pixel_measures, 1},
+               {"RescaleSlope", Tag(0x0028, 0x1053), value_transformation, 1},
+               {"RescaleIntercept", Tag(0x0028, 0x1052), value_transformation, 1}};
     std::vector<std::string> doubts;
     for (const auto& [name, tag, group, count] : all) {
         const std::string said = says(tag, group);
@@ -239,29 +248,25 @@ std::vector<std::string> doubts_of(const Attributes& says) {
 
 Slice slice_of(const Attributes& says, const Slice& plain, bool has_sign) {
     Slice slice = plain;
-    const Tag measures(0x0028, 0x9110), values(0x0028, 0x9145);
     slice.marks = marks_of(says, plain.file);
     find_spacing(says, slice);
-    slice.direction = direction_of(says(Tag(0x0020, 0x0037), Tag(0x0020, 0x9116)));
-    const std::string position = says(Tag(0x0020, 0x0032), Tag(0x0020, 0x9113));
+    slice.direction = direction_of(says(Tag(0x0020, 0x0037), plane_orientation));
+    const std::string position = says(Tag(0x0020, 0x0032), plane_position);
     if (const auto n = numbers(position); n.size() == 3) {
         slice.position = dvec3(n[0], n[1], n[2]);
         slice.rounding = last_place(position);
     }
     slice.location = number(says(Tag(0x0020, 0x1041)));
-    slice.thickness = number(says(Tag(0x0018, 0x0050), measures)).value_or(0);
-    slice.between = std::abs(number(says(Tag(0x0018, 0x0088), measures)).value_or(0));
-    if (const auto slope = number(says(Tag(0x0028, 0x1053), values)); slope && *slope != 0)
+    slice.thickness = number(says(Tag(0x0018, 0x0050), pixel_measures)).value_or(0);
+    slice.between = std::abs(number(says(Tag(0x0018, 0x0088), pixel_measures)).value_or(0));
+    if (const auto slope = number(says(Tag(0x0028, 0x1053), value_transformation)); slope && *slope != 0)
         slice.slope = *slope;
     if (const auto dose = number(says(Tag(0x3004, 0x000e)))) slice.slope = *dose;
-    slice.intercept = number(says(Tag(0x0028, 0x1052), values)).value_or(0);
+    slice.intercept = number(says(Tag(0x0028, 0x1052), value_transformation)).value_or(0);
     slice.doubts = doubts_of(says);
     if (const auto padding = padding_of(says.file, has_sign)) {
         const LookUpTable table = table_of(says.file, has_sign);
-        auto value = [&](double stored) {
-            return table.values.empty() ? stored * slice.slope + slice.intercept : double(table(stored));
-        };
-        const double a = value(padding->x), b = value(padding->y);
+        const double a = value_of(padding->x, slice, table), b = value_of(padding->y, slice, table);
         slice.padding = dvec2(std::min(a, b), std::max(a, b));
     }
     return slice;
@@ -324,25 +329,29 @@ std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
     if (set.FindDataElement(Tag(0x7fe0, 0x0008)) || set.FindDataElement(Tag(0x7fe0, 0x0009)))
         return troubled(plain, "float pixels (FloatPixelData), which are not read,",
                         "export it with whole numbers, or as NIfTI or NRRD");
-    if (set.FindDataElement(tables) && table_of(set, format.GetPixelRepresentation() == 1).values.empty())
+    if (set.FindDataElement(tables) && table_of(set, is_signed(format)).values.empty())
         return troubled(plain, "a table of values (ModalityLUTSequence) that is not whole",
                         "export it with RescaleSlope and RescaleIntercept");
     return std::nullopt;
 }
 
-// Those of a radiation dose, which says how far each lies above the first. Empty for what is none.
-std::vector<Slice> dose_slices(const DataSet& set, Slice plain, std::size_t frames) {
-    const auto offsets = numbers(text(set, Tag(0x3004, 0x000c)));
-    if (offsets.size() != frames || offsets[0] != 0 || !plain.position || !plain.direction) return {};
-    const dvec3 first = *plain.position;
+// The pictures of one file, of which the i-th lies `offsets[i]` above `first`.
+std::vector<Slice> stacked(Slice plain, dvec3 first, std::span<const double> offsets) {
     std::vector<Slice> all;
-    for (std::size_t i = 0; i < frames; ++i) {
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
         plain.frame = plain.number = int(i);
         plain.position = first + (*plain.direction)[2] * offsets[i];
         plain.marks.back().second = plain.file.filename().string();
         all.push_back(plain);
     }
     return all;
+}
+
+// Those of a radiation dose, which says how far each lies above the first. Empty for what is none.
+std::vector<Slice> dose_slices(const DataSet& set, const Slice& plain, std::size_t frames) {
+    const auto offsets = numbers(text(set, Tag(0x3004, 0x000c)));
+    if (offsets.size() != frames || offsets[0] != 0 || !plain.position || !plain.direction) return {};
+    return stacked(plain, *plain.position, offsets);
 }
 
 // Those of a nuclear medicine tomogram, which says where the first lies, and how far and on which side of it
@@ -355,15 +364,9 @@ std::vector<Slice> tomogram_slices(const DataSet& set, Slice plain, std::size_t 
     const double between = number(text(set, Tag(0x0018, 0x0088))).value_or(plain.thickness);
     plain.direction = direction_of(detector(Tag(0x0020, 0x0037), detectors));
     if (order.size() != frames || first.size() != 3 || between == 0 || !plain.direction) return {};
-    std::vector<Slice> all;
-    for (std::size_t i = 0; i < frames; ++i) {
-        plain.frame = plain.number = int(i);
-        plain.position =
-            dvec3(first[0], first[1], first[2]) + (*plain.direction)[2] * (between * (order[i] - 1.0));
-        plain.marks.back().second = plain.file.filename().string();
-        all.push_back(plain);
-    }
-    return all;
+    std::vector<double> offsets;
+    for (std::uint16_t place : order) offsets.push_back(between * (place - 1.0));
+    return stacked(plain, {first[0], first[1], first[2]}, offsets);
 }
 
 // Why a file of several pictures is no volume.
@@ -392,12 +395,11 @@ std::vector<Slice> slices_of(const gdcm::File& file, Slice plain, double left) {
         !(promised <= left))
         return {damaged(plain)};
 
-    const bool has_sign = format.GetPixelRepresentation() == 1;
-    if (frames == 1 && !set.FindDataElement(Tag(0x5200, 0x9230)))
-        return {slice_of({.file = set}, plain, has_sign)};
-    for (const auto stacked : {dose_slices, tomogram_slices})
-        if (auto all = stacked(set, slice_of({.file = set}, plain, has_sign), frames); !all.empty())
-            return all;
+    const bool has_sign = is_signed(format);
+    const Slice alone = slice_of({.file = set}, plain, has_sign);
+    if (frames == 1 && !set.FindDataElement(Tag(0x5200, 0x9230))) return {alone};
+    if (auto all = dose_slices(set, alone, frames); !all.empty()) return all;
+    if (auto all = tomogram_slices(set, alone, frames); !all.empty()) return all;
     const DataSet* shared = item(set, Tag(0x5200, 0x9229), 0);
     std::vector<Slice> all;
     for (std::size_t i = 0; i < frames; ++i) {
@@ -442,67 +444,75 @@ std::vector<Slice> scan_file(const std::filesystem::path& file) try {
 
 // ---- between two processes ----
 
-Json list(const double* numbers, int count) { return std::vector<double>(numbers, numbers + count); }
+// Each field of a slice with its name, but for its file, which is known by its number.
+template <class AnySlice, class Visit>
+void for_each_field(AnySlice& slice, const Visit& visit) {
+    visit("frame", slice.frame);
+    visit("trouble", slice.trouble);
+    visit("remedy", slice.remedy);
+    visit("damaged", slice.damaged);
+    visit("series", slice.series);
+    visit("study", slice.study);
+    visit("description", slice.description);
+    visit("number", slice.number);
+    visit("marks", slice.marks);
+    visit("size", slice.size);
+    visit("spacing", slice.spacing);
+    visit("spacing_source", slice.spacing_source);
+    visit("direction", slice.direction);
+    visit("position", slice.position);
+    visit("rounding", slice.rounding);
+    visit("location", slice.location);
+    visit("thickness", slice.thickness);
+    visit("between", slice.between);
+    visit("slope", slice.slope);
+    visit("intercept", slice.intercept);
+    visit("padding", slice.padding);
+    visit("doubts", slice.doubts);
+    visit("pixels_at", slice.pixels_at);
+}
 
-Json to_json(const Slice& s, std::size_t file) {
-    Json json = {{"file", file},
-                 {"frame", s.frame},
-                 {"trouble", s.trouble},
-                 {"remedy", s.remedy},
-                 {"damaged", s.damaged},
-                 {"series", s.series},
-                 {"study", s.study},
-                 {"description", s.description},
-                 {"number", s.number},
-                 {"marks", s.marks},
-                 {"size", {s.size.x, s.size.y}},
-                 {"spacing", {s.spacing.x, s.spacing.y}},
-                 {"spacing_source", s.spacing_source},
-                 {"rounding", s.rounding},
-                 {"thickness", s.thickness},
-                 {"between", s.between},
-                 {"slope", s.slope},
-                 {"intercept", s.intercept},
-                 {"doubts", s.doubts},
-                 {"pixels_at", s.pixels_at}};
-    if (s.direction) json["direction"] = list(&(*s.direction)[0][0], 9);
-    if (s.position) json["position"] = list(&(*s.position)[0], 3);
-    if (s.location) json["location"] = *s.location;
-    if (s.padding) json["padding"] = list(&(*s.padding)[0], 2);
+// The numbers of a vector or a matrix.
+template <class T>
+auto span_of(T& value) {
+    auto* const first = glm::value_ptr(value);
+    return std::span(first, sizeof value / sizeof *first);
+}
+
+// What may be lacking is null then, and a vector or a matrix is a list of its numbers.
+template <class T>
+Json json_of(const T& value) {
+    if constexpr (requires { value.has_value(); }) {
+        return value ? json_of(*value) : Json();
+    } else if constexpr (requires { T::length(); }) {
+        const auto numbers = span_of(value);
+        return std::vector(numbers.begin(), numbers.end());
+    } else {
+        return value;
+    }
+}
+
+template <class T>
+void assign(T& value, const Json& json) {
+    if constexpr (requires { value.has_value(); }) {
+        if (!json.is_null()) assign(value.emplace(), json);
+    } else if constexpr (requires { T::length(); }) {
+        for (std::size_t i = 0; auto& number : span_of(value)) json.at(i++).get_to(number);
+    } else {
+        json.get_to(value);
+    }
+}
+
+Json json_of(const Slice& slice, std::size_t file) {
+    Json json = {{"file", file}};
+    for_each_field(slice, [&](const char* name, const auto& value) { json[name] = json_of(value); });
     return json;
 }
 
-Slice from_json(const Json& json, const std::vector<std::filesystem::path>& files) {
-    Slice s;
-    s.file = files.at(json["file"]);
-    json["frame"].get_to(s.frame);
-    json["trouble"].get_to(s.trouble);
-    json["remedy"].get_to(s.remedy);
-    json["damaged"].get_to(s.damaged);
-    json["series"].get_to(s.series);
-    json["study"].get_to(s.study);
-    json["description"].get_to(s.description);
-    json["number"].get_to(s.number);
-    json["marks"].get_to(s.marks);
-    s.size = ivec2(json["size"][0], json["size"][1]);
-    s.spacing = dvec2(json["spacing"][0], json["spacing"][1]);
-    json["spacing_source"].get_to(s.spacing_source);
-    json["rounding"].get_to(s.rounding);
-    json["thickness"].get_to(s.thickness);
-    json["between"].get_to(s.between);
-    json["slope"].get_to(s.slope);
-    json["intercept"].get_to(s.intercept);
-    json["doubts"].get_to(s.doubts);
-    json["pixels_at"].get_to(s.pixels_at);
-    if (json.contains("direction")) {
-        s.direction.emplace(0.0);
-        for (int i = 0; i < 9; ++i) (*s.direction)[i / 3][i % 3] = json["direction"][std::size_t(i)];
-    }
-    if (json.contains("position"))
-        s.position = dvec3(json["position"][0], json["position"][1], json["position"][2]);
-    if (json.contains("location")) s.location = json["location"];
-    if (json.contains("padding")) s.padding = dvec2(json["padding"][0], json["padding"][1]);
-    return s;
+Slice slice_from(const Json& json, const std::vector<std::filesystem::path>& files) {
+    Slice slice = of_file(files.at(json.at("file")));
+    for_each_field(slice, [&](const char* name, auto& value) { assign(value, json.at(name)); });
+    return slice;
 }
 
 // Whether a process of GDCM's ended as it should not, and not for want of what this one needs to start it.
@@ -518,12 +528,12 @@ void scan(const std::vector<std::filesystem::path>& files, std::vector<Slice>& a
     const Written written = isolated("GDCM", files[0].string(), allowance, [&](std::FILE* out) {
         Json found = Json::array();
         for (std::size_t i = 0; i < files.size(); ++i)
-            for (const Slice& slice : scan_file(files[i])) found.push_back(to_json(slice, i));
+            for (const Slice& slice : scan_file(files[i])) found.push_back(json_of(slice, i));
         const std::string text = found.dump(-1, ' ', false, Json::error_handler_t::replace);
         std::fwrite(text.data(), 1, text.size(), out);
     });
     const auto bytes = written.bytes();
-    for (const Json& slice : Json::parse(bytes.begin(), bytes.end())) all.push_back(from_json(slice, files));
+    for (const Json& slice : Json::parse(bytes.begin(), bytes.end())) all.push_back(slice_from(slice, files));
 } catch (const Error& error) {
     if (!is_of_gdcm(error)) throw;
     if (files.size() == 1) {
@@ -558,8 +568,7 @@ Pixels read_picture(const std::filesystem::path& file) {
     Pixels picture{.file = file,
                    .bytes = std::vector<char>(image.GetBufferLength()),
                    .format = image.GetPixelFormat(),
-                   .table = table_of(reader.GetFile().GetDataSet(),
-                                     image.GetPixelFormat().GetPixelRepresentation() == 1)};
+                   .table = table_of(reader.GetFile().GetDataSet(), is_signed(image.GetPixelFormat()))};
     if (!image.GetBuffer(picture.bytes.data())) refuse_packing(reader.GetFile(), file);
     // GDCM swaps the bytes of each half of a number of 32 bits, but not the halves.
     const bool turned =
@@ -585,9 +594,7 @@ void write_values(const Pixels& picture, const Slice& slice, std::FILE* out) {
         std::make_unsigned_t<T> raw;
         std::memcpy(&raw, from + i * sizeof(T), sizeof raw);
         raw = std::make_unsigned_t<T>(raw << (unused - below));
-        const T number = T(T(raw) >> unused);
-        values[i] = picture.table.values.empty() ? float(double(number) * slice.slope + slice.intercept)
-                                                 : picture.table(double(number));
+        values[i] = float(value_of(double(T(T(raw) >> unused)), slice, picture.table));
     }
     if (std::fwrite(values.data(), sizeof(float), count, out) != count) throw std::bad_alloc();
 }
