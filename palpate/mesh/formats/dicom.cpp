@@ -24,7 +24,7 @@ using Group = std::vector<Slice>;
 constexpr double even = 0.01, bearable = 0.1;
 // Of directions, and of spacings relative to each other.
 constexpr double alike = 1e-3;
-constexpr int most_files = 100'000, deepest = 8;
+constexpr int most_files_in_a_folder = 100'000, deepest = 8;
 
 // ---- files ----
 
@@ -61,8 +61,9 @@ std::vector<std::filesystem::path> dicom_files_below(const std::filesystem::path
     int seen = 0;
     const auto options = std::filesystem::directory_options::skip_permission_denied;
     for (std::filesystem::recursive_directory_iterator entry(folder, options), end; entry != end; ++entry) {
-        if (++seen > most_files)
-            refuse(fmt::format("more than {} files", most_files), folder, "name the folder of one series");
+        if (++seen > most_files_in_a_folder)
+            refuse(fmt::format("more than {} files", most_files_in_a_folder), folder,
+                   "name the folder of one series");
         if (entry.depth() >= deepest) entry.disable_recursion_pending();
         if (entry.depth() > 0 && holds_dicom(entry->path())) files.push_back(entry->path());
     }
