@@ -1,6 +1,7 @@
 #include "palpate/base/isolated.h"
 
 #include "palpate/base/error.h"
+#include "tests/refusal.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -14,13 +15,8 @@
 namespace palpate {
 namespace {
 
-std::string complaint(const Allowance& allowance, const std::function<void(std::FILE*)>& work) {
-    try {
-        isolated("the library", "a file", allowance, work);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "none";
+std::string refusal(const Allowance& allowance, const std::function<void(std::FILE*)>& work) {
+    return palpate::refusal([&] { isolated("the library", "a file", allowance, work); });
 }
 
 TEST(Isolated, HandsOnWhatWasWritten) {
@@ -33,7 +29,7 @@ TEST(Isolated, HandsOnWhatWasWritten) {
 }
 
 TEST(Isolated, AnErrorComesThroughAsItIs) {
-    const std::string said = complaint({}, [](std::FILE* out) {
+    const std::string said = refusal({}, [](std::FILE* out) {
         std::fputs("half of the work, longer than the complaint that follows it", out);
         throw Error("no faces", "x.ply", "export it again");
     });
@@ -41,34 +37,33 @@ TEST(Isolated, AnErrorComesThroughAsItIs) {
 }
 
 TEST(Isolated, ACrashAHangAndGreedEndOnlyTheCopy) {
-    EXPECT_EQ(complaint({}, [](std::FILE*) { std::raise(SIGKILL); }),
+    EXPECT_EQ(refusal({}, [](std::FILE*) { std::raise(SIGKILL); }),
               "the library crashed on what is in a file; convert it with another program");
-    EXPECT_EQ(complaint({.seconds = 0.1},
-                        [](std::FILE*) {
-                            volatile bool ends = false;
-                            while (!ends) {}
-                        }),
+    EXPECT_EQ(refusal({.seconds = 0.1},
+                      [](std::FILE*) {
+                          volatile bool ends = false;
+                          while (!ends) {}
+                      }),
               "the library is not done after 0.1 s with what is in a file; convert it with another program");
     EXPECT_EQ(
-        complaint({.idle = 0.1},
-                  [](std::FILE*) {
-                      for (;;) pause();
-                  }),
+        refusal({.idle = 0.1},
+                [](std::FILE*) {
+                    for (;;) pause();
+                }),
         "the library has stood still for 0.1 s over what is in a file; convert it with another program");
-    EXPECT_EQ(complaint({.output = 1 << 20},
-                        [](std::FILE* out) {
-                            for (int i = 0; i < 3 << 20; ++i) std::fputc('x', out);
-                        }),
+    EXPECT_EQ(refusal({.output = 1 << 20},
+                      [](std::FILE* out) {
+                          for (int i = 0; i < 3 << 20; ++i) std::fputc('x', out);
+                      }),
               "the library makes more than 1 MB of what is in a file; convert it with another program");
-    EXPECT_EQ(
-        complaint({.output = 0}, [](std::FILE*) { throw Error("no faces", "x.ply", "export it again"); }),
-        "no faces in x.ply; export it again");
+    EXPECT_EQ(refusal({.output = 0}, [](std::FILE*) { throw Error("no faces", "x.ply", "export it again"); }),
+              "no faces in x.ply; export it again");
 #ifndef __SANITIZE_ADDRESS__
-    EXPECT_EQ(complaint({.bytes = 64 << 20},
-                        [](std::FILE* out) {
-                            std::vector<std::vector<char>> all;
-                            for (;;) std::fputc(all.emplace_back(1 << 20, 'x')[7], out);
-                        }),
+    EXPECT_EQ(refusal({.bytes = 64 << 20},
+                      [](std::FILE* out) {
+                          std::vector<std::vector<char>> all;
+                          for (;;) std::fputc(all.emplace_back(1 << 20, 'x')[7], out);
+                      }),
               "the library wants more than 64 MB for what is in a file; convert it with another program");
 #endif
 }

@@ -2,12 +2,12 @@
 #include "palpate/body/embedding.h"
 
 #include "bench/deformations.h"
-#include "palpate/base/error.h"
 #include "palpate/base/team.h"
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/mesh/triangle.h"
 #include "tests/body/turn.h"
+#include "tests/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -509,12 +509,7 @@ TEST(Embedding, AnEmptySurfaceIsEmpty) {
 }
 
 std::string refusal(const Body& body, Mapping mode) {
-    try {
-        embed(organ(), body, mode);
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "";
+    return palpate::refusal([&] { embed(organ(), body, mode); });
 }
 
 TEST(Embedding, WhatNothingCanHangOnIsRefused) {

@@ -1,4 +1,6 @@
 // What a caller can get wrong is an Error that says so.
+#include "tests/refusal.h"
+
 #include "palpate/base/error.h"
 #include "palpate/base/team.h"
 #include "palpate/body/cloth.h"
@@ -30,15 +32,6 @@ namespace {
 
 const Material tissue{.youngs_modulus = 2000, .density = 1000};
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
-
-void expect_refused(const std::string& word, const std::function<void()>& act) {
-    try {
-        act();
-        ADD_FAILURE() << word << ": taken";
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-    }
-}
 
 // Meshes that no function may take as they are.
 std::vector<Mesh> unsound() {

@@ -77,8 +77,8 @@ TEST(Assimp, AnAxisOfColladaMayHaveAnyLength) {
         EXPECT_LE(glm::distance(bounds(mesh).high, vec3(3.953f, 3.414f, 5.441f)), 1e-3f) << axis;
         EXPECT_LE(std::abs(volume(mesh) - 30), 1e-3) << axis;
     }
-    EXPECT_NE(parse_error("a.dae", "<rotate"), "no error");
-    EXPECT_NE(parse_error("a.dae", "<rotate>1 2"), "no error");
+    EXPECT_NE(parse_error("a.dae", "<rotate"), "");
+    EXPECT_NE(parse_error("a.dae", "<rotate>1 2"), "");
 }
 
 TEST(Assimp, RefusesWhatIsDamaged) {
@@ -93,7 +93,7 @@ TEST(Assimp, RefusesWhatIsDamaged) {
     }
     for (const char* name : {"a.glb", "a.gltf", "a.x3d", "a.3mf", "a.fbx", "a.dae", "a.3ds", "a.lwo"})
         for (const std::string& bytes : {std::string(), std::string(500, '\0'), std::string("noise")})
-            EXPECT_NE(parse_error(name, bytes), "no error") << name;
+            EXPECT_NE(parse_error(name, bytes), "") << name;
 }
 
 // One file of each format, as other programs wrote it, and how many triangles it has.

@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 std::string dicom_error(const std::filesystem::path& path) {
-    return error_of(path, [&] { read_volume(path); });
+    return refusal(path, [&] { read_volume(path); });
 }
 
 void expect_same(const Volume& a, const Volume& b) {
@@ -85,8 +85,8 @@ TEST_F(ReadDicom, RefusesWhatIsNoStackOfSlices) {
         std::filesystem::remove(folder / "last.dcm");
         return error;
     };
-    EXPECT_EQ(replaced([](Volume&) {}), "no error") << "a copy";
-    EXPECT_EQ(replaced([](Volume& v) { v.dims = {5, 4, 8}; }), "no error") << "a scout";
+    EXPECT_EQ(replaced([](Volume&) {}), "") << "a copy";
+    EXPECT_EQ(replaced([](Volume& v) { v.dims = {5, 4, 8}; }), "") << "a scout";
     EXPECT_HAS(replaced([](Volume& v) { v.origin += 4.5f * v.spacing.z * v.direction[2]; }), "a distance of");
 }
 
@@ -130,9 +130,9 @@ TEST_F(ReadDicom, RefusesFilesCutAnywhere) {
         }
     }
     put(file(2), whole.substr(0, whole.size() - 1));
-    EXPECT_HAS(error_of(file(2), [&] { read_volume(folder); }), "truncated");
+    EXPECT_HAS(refusal(file(2), [&] { read_volume(folder); }), "truncated");
     put(file(2), std::string(128, 'x') + "DICM" + std::string(1000, 'x'));
-    EXPECT_HAS(error_of(file(2), [&] { read_volume(file(2)); }), "damaged");
+    EXPECT_HAS(refusal(file(2), [&] { read_volume(file(2)); }), "damaged");
     put(file(2), "no DICOM");
     EXPECT_HAS(dicom_error(file(2)), "no DICOM header");
     EXPECT_HAS(dicom_error("gone.dcm"), "cannot open");

@@ -18,7 +18,7 @@ namespace {
 
 std::string volume_error(const std::filesystem::path& path, const std::string& bytes) {
     put(path, bytes);
-    return error_of(path, [&] { read_volume(path); });
+    return refusal(path, [&] { read_volume(path); });
 }
 
 template <class T>
@@ -139,7 +139,7 @@ TEST(ReadHeaded, FindsVoxelsInAFileOfTheirOwn) {
     put(scratch / "voxels.raw", bytes_of<std::int16_t>(count_up()).substr(0, 47));
     for (const char* name : {"a.nhdr", "a.mhd"}) {
         put(scratch / "a.nhdr", header);
-        EXPECT_HAS(error_of(scratch / "voxels.raw", [&] { read_volume(scratch / name); }), "truncated")
+        EXPECT_HAS(refusal(scratch / "voxels.raw", [&] { read_volume(scratch / name); }), "truncated")
             << name;
     }
 }
@@ -152,8 +152,8 @@ TEST(ReadHeaded, RefusesFilesCutAnywhere) {
             write_with_itk(volume, scratch / name, compressed);
             const std::string whole = read_text(scratch / name);
             for (std::size_t length = 0; length < whole.size(); length += 1 + length / 30)
-                EXPECT_NE(volume_error(scratch / name, whole.substr(0, length)), "no error") << length;
-            EXPECT_NE(volume_error(scratch / name, whole.substr(0, whole.size() - 1)), "no error");
+                EXPECT_NE(volume_error(scratch / name, whole.substr(0, length)), "") << length;
+            EXPECT_NE(volume_error(scratch / name, whole.substr(0, whole.size() - 1)), "");
         }
 }
 
@@ -167,13 +167,13 @@ TEST(ReadHeaded, RefusesLies) {
     EXPECT_HAS(sizes("2 3 5"), "truncated");
     for (const char* numbers : {"0 3 4", "-2 3 4"}) EXPECT_HAS(sizes(numbers), "voxels wide");
     for (const char* numbers : {"2 3", "", "nan 3 4", "1e9999 3 4", "2,5 3 4", "2.5 3 4"})
-        EXPECT_NE(sizes(numbers), "no error") << numbers;
-    EXPECT_NE(volume_error(path, changed(whole, "uchar", "block")), "no error");
-    EXPECT_NE(volume_error(path, changed(whole, "raw", "bzip2")), "no error");
+        EXPECT_NE(sizes(numbers), "") << numbers;
+    EXPECT_NE(volume_error(path, changed(whole, "uchar", "block")), "");
+    EXPECT_NE(volume_error(path, changed(whole, "raw", "bzip2")), "");
     EXPECT_HAS(volume_error(path, std::string(1000, 'x')), "no NRRD header");
     EXPECT_HAS(volume_error(path, std::string(1000, '\0')), "no NRRD header");
     EXPECT_HAS(volume_error(path, ""), "an empty file");
-    EXPECT_NE(volume_error(path, changed(nrrd("uchar", "raw"), "\n\n", "")), "no error");
+    EXPECT_NE(volume_error(path, changed(nrrd("uchar", "raw"), "\n\n", "")), "");
     EXPECT_HAS(volume_error(path, "NRRD0004\n" + std::string(2 << 20, 'x')), "without an end");
 
     const auto meta = scratch / "a.mha";
@@ -181,7 +181,7 @@ TEST(ReadHeaded, RefusesLies) {
     EXPECT_HAS(volume_error(meta, changed(image, "2 3 4", "65536 65536 256")), "more than 2^30");
     EXPECT_HAS(volume_error(meta, changed(image, "2 3 4", "1000 1000 1000")), "truncated");
     EXPECT_HAS(volume_error(meta, changed(image, "2 3 4", "2 12")), "2 sizes for 3 dimensions");
-    EXPECT_NE(volume_error(meta, changed(image, "NDims = 3", "NDims = 7")), "no error");
+    EXPECT_NE(volume_error(meta, changed(image, "NDims = 3", "NDims = 7")), "");
     EXPECT_HAS(volume_error(meta, changed(image, "MET_UCHAR", "MET_UCHAR\nElementNumberOfChannels = 3")),
                "numbers a voxel");
     EXPECT_HAS(volume_error(meta, ""), "an empty file");
@@ -196,17 +196,17 @@ TEST(ReadHeaded, RefusesGeometryThatIsNone) {
                                                          "\nspace origin: (0,0,0)\n") +
                                                     bytes_of<std::uint8_t>(count_up()));
     };
-    EXPECT_EQ(with("(1,0,0) (0,1,0) (0,0,1)"), "no error");
+    EXPECT_EQ(with("(1,0,0) (0,1,0) (0,0,1)"), "");
     EXPECT_HAS(with("(1,0.2,0) (0,1,0) (0,0,1)"), "right angles");
     for (const char* directions : {"(0,0,0) (0,1,0) (0,0,1)", "(nan,0,0) (0,1,0) (0,0,1)",
                                    "(inf,0,0) (0,1,0) (0,0,1)", "(1e30,0,0) (0,1,0) (0,0,1)"})
-        EXPECT_NE(with(directions), "no error") << directions;
+        EXPECT_NE(with(directions), "") << directions;
     for (const char* spacing : {"0 1 1", "nan 1 1", "1e30 1 1"})
         EXPECT_NE(
             volume_error(scratch / "a.mha",
                          metaimage(fmt::format("ElementType = MET_UCHAR\nElementSpacing = {}", spacing)) +
                              bytes_of<std::uint8_t>(count_up())),
-            "no error")
+            "")
             << spacing;
 }
 
@@ -356,7 +356,7 @@ TEST_F(ReadNoted, JoinsVoxelsFromSeveralFiles) {
         EXPECT_HAS(volume_error(scratch / "a.nhdr", header(fmt::format("data file: z%02d {}\n", range))),
                    "not understood");
     put(scratch / "a.nhdr", header("data file: z%02d 3 6 1\n"));
-    EXPECT_HAS(error_of(scratch / "a.nhdr", [&] { read_volume(scratch / "a.nhdr"); }), "z05\"");
+    EXPECT_HAS(refusal(scratch / "a.nhdr", [&] { read_volume(scratch / "a.nhdr"); }), "z05\"");
     const std::string meta = "ElementType = MET_UCHAR\nElementSpacing = 1 1 1\nHeaderSize = 1";
     EXPECT_EQ(read("a.mhd", metaimage(meta, "LIST\n" + list)).values, expected);
     EXPECT_EQ(read("a.mhd", metaimage(meta, "z%02d 1 4 1")).values, expected);

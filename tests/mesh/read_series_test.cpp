@@ -74,12 +74,7 @@ class ReadSeries : public testing::Test {
         return read_volume(path, {}, &notes);
     }
     std::string error(const std::filesystem::path& path) {
-        try {
-            read(path);
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "no error";
+        return refusal([&] { read(path); });
     }
     std::string all_notes() const {
         std::string all;

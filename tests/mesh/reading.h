@@ -2,6 +2,7 @@
 // What the tests of readers share.
 #include "palpate/base/error.h"
 #include "palpate/mesh/read.h"
+#include "tests/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -14,30 +15,11 @@
 
 namespace palpate {
 
-// The message of the one Error that `f` must throw: a single line that names the file.
-template <class F>
-inline std::string error_of(const std::filesystem::path& path, F f) {
-    try {
-        f();
-    } catch (const Error& error) {
-        const std::string line = error.what();
-        EXPECT_EQ(line.find('\n'), std::string::npos);
-        EXPECT_NE(line.find(path.string() + "; "), std::string::npos) << line;
-        return line;
-    }
-    return "no error";
-}
-
-// The same of what reads no file.
-template <class F>
-inline std::string error_of(F f) {
-    try {
-        f();
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-        return error.what();
-    }
-    return "no error";
+// What the Error says, which must name the file; empty if none was thrown.
+inline std::string refusal(const std::filesystem::path& path, const std::function<void()>& act) {
+    const std::string said = refusal(act);
+    EXPECT_TRUE(said.empty() || said.find(path.string() + "; ") != said.npos) << said;
+    return said;
 }
 
 // Without write_text's wait for the disk: these tests write thousands of files.
@@ -45,9 +27,9 @@ inline void put(const std::filesystem::path& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// Of a file with these bytes and a name of this ending; "no error" if it is read.
+// Of a file with these bytes and a name of this ending; empty if it is read.
 inline std::string parse_error(const std::string& name, std::string_view bytes) {
-    return error_of(name, [&] { parse_mesh(bytes, name, Units::metres); });
+    return refusal(name, [&] { parse_mesh(bytes, name, Units::metres); });
 }
 
 // Reading must end in a sound mesh or in an Error, whatever the bytes.

@@ -1,9 +1,9 @@
 #include "palpate/mesh/remake.h"
 
-#include "palpate/base/error.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/mesh/soundness.h"
 #include "tests/mesh/shapes.h"
+#include "tests/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -42,14 +42,10 @@ Mesh lathe(std::vector<vec2> line, const std::vector<vec2>& back) {
     return volume(mesh) < 0 ? inside_out(mesh) : mesh;
 }
 
-std::string error_of(const Mesh& mesh, float voxel = 0) {
-    try {
-        remake(mesh, voxel, "FILE");
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("FILE"), std::string::npos);
-        return error.what();
-    }
-    return "no error";
+std::string refusal(const Mesh& mesh, float voxel = 0) {
+    const std::string said = palpate::refusal([&] { remake(mesh, voxel, "FILE"); });
+    EXPECT_NE(said.find("FILE"), said.npos) << said;
+    return said;
 }
 
 TEST(Remake, IsTrueToTheSurface) {
@@ -170,12 +166,12 @@ TEST(Remake, WhatHasNoInsideIsAnError) {
         {vec3(0), vec3(1, 0, 0), vec3(1, 1, 0.2f), vec3(0, 1, 0.2f)}, {}, {{0, 1, 2}, {0, 2, 3}}};
     for (const Mesh& mesh : {sheet, Mesh{}, Mesh{{vec3(1)}, {}, {{0, 0, 0}}},
                              Mesh{{vec3(0), vec3(1), vec3(2)}, {}, {{0, 1, 2}}}})
-        EXPECT_NE(error_of(mesh).find("give it a thickness"), std::string::npos) << error_of(mesh);
+        EXPECT_NE(refusal(mesh).find("give it a thickness"), std::string::npos) << refusal(mesh);
 }
 
 TEST(Remake, TooFineAGridIsAnErrorBeforeItIsBuilt) {
     for (float voxel : {1e-4f, 1e-9f, 1e-38f})
-        EXPECT_NE(error_of(box(vec3(0), vec3(1)), voxel).find("larger voxels"), std::string::npos);
+        EXPECT_NE(refusal(box(vec3(0), vec3(1)), voxel).find("larger voxels"), std::string::npos);
 }
 
 }  // namespace

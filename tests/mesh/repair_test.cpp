@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/mesh/intersections.h"
 #include "tests/mesh/shapes.h"
+#include "tests/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -38,15 +39,11 @@ void expect_sound(const Mesh& mesh) {
         EXPECT_TRUE(size == 0 || size == mesh.positions.size());
 }
 
-std::string error_of(Mesh mesh, RepairSettings settings = {}) {
+std::string refusal(Mesh mesh, RepairSettings settings = {}) {
     settings.name = "FILE";
-    try {
-        repair(mesh, settings);
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("FILE"), std::string::npos);
-        return error.what();
-    }
-    return "no error";
+    const std::string said = palpate::refusal([&] { repair(mesh, settings); });
+    EXPECT_NE(said.find("FILE"), said.npos) << said;
+    return said;
 }
 
 // ---- what is sound stays as it is ----
@@ -275,12 +272,12 @@ TEST(Repair, WhatHasNoInsideIsAnErrorThatSaysWhatToDo) {
             Mesh scaled = mesh;
             for (vec3& p : scaled.positions) p *= scale;
             const vec3 size = bounds(scaled).size();
-            const std::string said = error_of(scaled, {.voxel = std::max({size.x, size.y, size.z}) / 60});
+            const std::string said = refusal(scaled, {.voxel = std::max({size.x, size.y, size.z}) / 60});
             EXPECT_NE(said.find("sheet = true"), std::string::npos) << said;
         }
     Mesh broken = box(vec3(0), vec3(1));
     broken.positions[3].y = NAN;
-    EXPECT_NE(error_of(broken).find("not finite"), std::string::npos);
+    EXPECT_NE(refusal(broken).find("not finite"), std::string::npos);
 }
 
 TEST(Repair, ASheetStaysOne) {

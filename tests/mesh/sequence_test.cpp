@@ -183,9 +183,9 @@ TEST(Sequence, GlbPlaysEachPictureAndBlendsNeighbours) {
 TEST(Sequence, WhatDoesNotFitIntoAGlbIsSaidBeforehand) {
     Scratch scratch;
     const Mesh mesh = ball();  // 162 vertices: 3888 bytes a picture, and 4 for each pair
-    EXPECT_HAS(error_of(scratch / "a.glb", [&] { make_sequence(mesh, scratch / "a.glb", 23'000); }), "2 GB");
+    EXPECT_HAS(refusal(scratch / "a.glb", [&] { make_sequence(mesh, scratch / "a.glb", 23'000); }), "2 GB");
     make_sequence(mesh, scratch / "a.glb", 22'000);
-    EXPECT_HAS(error_of(scratch / "b.glb", [&] { make_sequence({}, scratch / "b.glb", 1); }), "no triangles");
+    EXPECT_HAS(refusal(scratch / "b.glb", [&] { make_sequence({}, scratch / "b.glb", 1); }), "no triangles");
     EXPECT_EQ(scratch.entries(), 0u);
 }
 
@@ -207,7 +207,7 @@ TEST(Sequence, RefusesPicturesThatDoNotFit) {
     for (const char* name : {"a.ply", "a.pc2", "a.glb"}) {
         const auto sequence = make_sequence(mesh, scratch / name, 3);
         const auto refused = [&](double time, std::span<const vec3> p, std::span<const vec3> n) {
-            return error_of(scratch / name, [&] { sequence->add(time, p, n); });
+            return refusal(scratch / name, [&] { sequence->add(time, p, n); });
         };
         EXPECT_HAS(refused(0, positions.first(7), normals), "number of vertices");
         EXPECT_HAS(refused(0, positions, normals.first(7)), "number of vertices");
@@ -222,7 +222,7 @@ TEST(Sequence, RefusesPicturesThatDoNotFit) {
 TEST(Sequence, RefusesOtherEndings) {
     Scratch scratch;
     for (const char* name : {"a.gltf", "a.mp4", "a"})
-        EXPECT_HAS(error_of(scratch / name, [&] { check_sequence_name(scratch / name); }),
+        EXPECT_HAS(refusal(scratch / name, [&] { check_sequence_name(scratch / name); }),
                    ".pc2, .mdd or .glb");
 }
 

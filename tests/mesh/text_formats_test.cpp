@@ -92,7 +92,7 @@ TEST(TextFormats, NumbersThatAreNone) {
             EXPECT_HAS(parse_error(name, text), "vertex 2 of 3 not finite") << name;
     for (const char* bad : {"x", "0x", "1..2", "--1", "\xff"})
         for (const auto& [name, text] : spellings({"0 0 0", std::string("1 0 ") + bad, "0 1 0"}))
-            if (name != "a.wrl" || *bad != 'x') EXPECT_NE(parse_error(name, text), "no error") << name << bad;
+            if (name != "a.wrl" || *bad != 'x') EXPECT_NE(parse_error(name, text), "") << name << bad;
     for (const auto& [name, text] : spellings({"0 0 0", "1,5 0 0", "0 1 0"}))
         if (name != "a.wrl") {  // where a comma is a space
             EXPECT_HAS(parse_error(name, text), "a decimal comma, \"1,5\",") << name;
@@ -384,7 +384,7 @@ TEST(Stl, BinaryWhateverItsHeaderSays) {
     EXPECT_HAS(parse_error("a.stl", stl_of(Mesh(), "solid", 0)), "no faces");
     const std::string whole = stl_of(mesh, "solid", 12);
     for (std::size_t length = 0; length < whole.size(); ++length)
-        EXPECT_NE(parse_error("a.stl", whole.substr(0, length)), "no error") << length;
+        EXPECT_NE(parse_error("a.stl", whole.substr(0, length)), "") << length;
     EXPECT_HAS(parse_error("a.stl", stl_of(box(vec3(1e6f), vec3(1e6f + 1)), "", 12)),
                "move it to the origin");
     EXPECT_HAS(parse_error("a.stl", stl_of(box(vec3(0), vec3(INFINITY)), "", 12)), "not finite");
@@ -436,7 +436,7 @@ TEST(Stl, TextInAnyCapitalsAndSeveralSolids) {
     EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{0, 1, 2}, {3, 4, 5}}));
     EXPECT_EQ(mesh.positions[5], vec3(0, 1, 1));
     for (std::size_t length = 0; length < text.find("Facet\r\nENDSOLID") + 5; ++length)
-        EXPECT_NE(parse_error("a.stl", text.substr(0, length)), "no error") << length;
+        EXPECT_NE(parse_error("a.stl", text.substr(0, length)), "") << length;
     EXPECT_HAS(parse_error("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\nendsolid"),
                "1 corners in line 5");
     EXPECT_HAS(parse_error("a.stl", "solid\nfacet\nouter loop\nvertex 0 0\nvertex 1 1 1\nendsolid"),
@@ -538,13 +538,13 @@ TEST(Off, RefusesTheRest) {
 TEST(TextFormats, NoiseAndEmptyFilesAreRefused) {
     std::mt19937 random(5);
     for (const char* name : {"a.obj", "a.off", "a.ply", "a.stl", "a.wrl"}) {
-        EXPECT_NE(parse_error(name, ""), "no error") << name;
-        EXPECT_NE(parse_error(name, std::string(1000, '\0')), "no error") << name;
+        EXPECT_NE(parse_error(name, ""), "") << name;
+        EXPECT_NE(parse_error(name, std::string(1000, '\0')), "") << name;
         EXPECT_HAS(parse_error(name, std::string("\xfe\xff\0v\0 ", 6)), "UTF-16") << name;
         for (std::size_t size : {1, 7, 100, 5000}) {
             std::string noise(size, '\0');
             for (char& c : noise) c = char(random());
-            EXPECT_NE(parse_error(name, noise), "no error") << name;
+            EXPECT_NE(parse_error(name, noise), "") << name;
         }
     }
 }

@@ -126,7 +126,7 @@ TEST(ThreeMf, WhatIsLeftOutIsSaid) {
 TEST(ThreeMf, RefusesWhatIsDamaged) {
     const std::string whole = archive(model(one, built));
     for (std::size_t length = 0; length < whole.size(); ++length)
-        EXPECT_NE(parse_error("a.3mf", whole.substr(0, length)), "no error") << length;
+        EXPECT_NE(parse_error("a.3mf", whole.substr(0, length)), "") << length;
     EXPECT_HAS(parse_error("a.3mf", zipped({{"x", "y"}})), "no \"3D/3dmodel.model\" in the archive");
     EXPECT_HAS(refused(model("<object id='1'><mesh><vertices/><triangles><triangle v1='0' v2='1' v3='2'/>"
                              "</triangles></mesh></object>",

@@ -31,7 +31,7 @@ TEST(WriteMesh, RefusesOtherEndingsAndLeavesNothing) {
     Scratch scratch;
     for (const char* name : {"a.xyz", "a", "ply", "a.pc2"}) {
         const std::string line =
-            error_of(scratch / name, [&] { write_mesh(box(vec3(0), vec3(1)), scratch / name); });
+            refusal(scratch / name, [&] { write_mesh(box(vec3(0), vec3(1)), scratch / name); });
         EXPECT_HAS(line, ".ply, .obj, .stl, .vtp, .glb or .gltf");
     }
     EXPECT_EQ(scratch.entries(), 0u);
@@ -157,7 +157,7 @@ TEST(WriteMesh, WhatHasNoTrianglesIsWrittenWhereTheFormatCan) {
     Scratch scratch;
     for (const char* name : {"a.ply", "a.obj", "a.stl", "a.vtp"}) write_mesh({}, scratch / name);
     for (const char* name : {"a.glb", "a.gltf"})
-        EXPECT_HAS(error_of(scratch / name, [&] { write_mesh({}, scratch / name); }), "no triangles");
+        EXPECT_HAS(refusal(scratch / name, [&] { write_mesh({}, scratch / name); }), "no triangles");
     EXPECT_EQ(scratch.entries(), 4u);
 }
 

@@ -79,7 +79,7 @@ TEST(X3d, UnitsThatTheFileStates) {
         EXPECT_NE(
             parse_error("a.x3d",
                         file(shape, fmt::format("<unit category='length' conversionFactor='{}'/>", bad))),
-            "no error")
+            "")
             << bad;
 }
 
@@ -302,10 +302,10 @@ TEST(X3d, RefusesWhatIsDamaged) {
                "for a name or numbers in line 4");
     const std::string whole = file(shape);
     for (std::size_t length = 0; length < whole.size(); ++length)
-        EXPECT_NE(parse_error("a.x3d", whole.substr(0, length)), "no error") << length;
+        EXPECT_NE(parse_error("a.x3d", whole.substr(0, length)), "") << length;
     std::string deep;
     for (int i = 0; i < 200'000; ++i) deep += "<Group>";
-    EXPECT_NE(refused(deep), "no error");
+    EXPECT_NE(refused(deep), "");
     // UTF-16, with its mark, is XML like any other.
     std::u16string wide = u"\ufeff";
     for (char c : whole.substr(whole.find('\n'))) wide += char16_t(c);

@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/gl/context.h"
 #include "palpate/render/view.h"
+#include "tests/refusal.h"
 #include "tests/shapes.h"
 
 #include <gtest/gtest.h>
@@ -389,12 +390,8 @@ TEST_F(Rendering, RenderersMoveAndStayApart) {
 
 TEST_F(Rendering, SizesThatCannotBeAreErrors) {
     for (Offscreen size : {Offscreen{0, 10}, Offscreen{10, -1}, Offscreen{1 << 24, 10}}) {
-        try {
-            Renderer renderer(size);
-            ADD_FAILURE() << "nothing was thrown for " << size.width << " x " << size.height;
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find("choose 1 to"), std::string::npos) << error.what();
-        }
+        SCOPED_TRACE(size.width);
+        expect_refused("choose 1 to", [&] { Renderer renderer(size); });
     }
 }
 

@@ -5,6 +5,7 @@
 #include "palpate/base/files.h"
 #include "palpate/run/recording.h"
 #include "palpate/solver/stability.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 
 #include <gtest/gtest.h>
@@ -353,13 +354,9 @@ TEST(Recording, WhatIsWrongWithAFileIsSaid) {
     const Scratch scratch;
     auto refused = [&](const std::string& text) {
         write_text(scratch / "bad.json", text);
-        try {
-            read_recording(scratch / "bad.json");
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find("bad.json"), std::string::npos);
-            return true;
-        }
-        return false;
+        const std::string said = refusal([&] { read_recording(scratch / "bad.json"); });
+        EXPECT_TRUE(said.empty() || said.find("bad.json") != said.npos) << said;
+        return !said.empty();
     };
     EXPECT_TRUE(refused(""));
     EXPECT_TRUE(refused("{"));

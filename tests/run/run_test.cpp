@@ -8,6 +8,7 @@
 #include "palpate/run/notes.h"
 #include "palpate/run/plot.h"
 #include "palpate/run/tip.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
@@ -136,12 +137,7 @@ TEST(Run, LongStepsStillMakeEvenSequences) {
 }
 
 std::string refusal(const Scene& scene, const RunSettings& settings) {
-    try {
-        run(scene, settings);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "done";
+    return palpate::refusal([&] { run(scene, settings); });
 }
 
 TEST(Run, OutputsAreRefusedBeforeTheWork) {
@@ -576,13 +572,9 @@ TEST(Run, ASequenceThatDivergesIsKept) {
 }
 
 TEST(Run, AToolThatMeetsNothingIsNamed) {
-    try {
-        run(scene({"tool.finger.from=[1, 1, 1]"}), {});
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("tool.finger.from"), std::string::npos);
-        EXPECT_NE(std::string(error.what()).find("--set"), std::string::npos);
-    }
+    const std::string said = refusal(scene({"tool.finger.from=[1, 1, 1]"}), {});
+    EXPECT_NE(said.find("tool.finger.from"), std::string::npos) << said;
+    EXPECT_NE(said.find("--set"), std::string::npos) << said;
 }
 
 // The main job, until the finger holds still 10 mm in.

@@ -6,6 +6,7 @@
 #include "palpate/mesh/image.h"
 #include "palpate/mesh/read.h"
 #include "palpate/mesh/write.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
@@ -30,6 +31,11 @@ density = 1000
 
 Models make(const std::string& text, const std::filesystem::path& folder = ".") {
     return build(parse_scene(text, "test.toml", folder));
+}
+
+// The message that making a scene is refused with.
+std::string refusal(const std::string& text, const std::filesystem::path& folder) {
+    return palpate::refusal([&] { make(text, folder); });
 }
 
 bool has_note(const Models& made, const std::string& words) {
@@ -90,27 +96,13 @@ TEST(Build, MissingFilesAreNamedWithTheirLineBeforeTheWork) {
              {"[[surface]]\nvolume = \"liver.nii\"\n", "volume of surface surface1, liver.nii"},
              {"[[body.region]]\nlabels = \"liver.nrrd\"\nlabel = 1\nfactor = 2\n", "labels of body a"},
              {"[[collider]]\nfield = { surface = \"lver.ply\" }\n", "field.surface of collider 1"},
-             {"[[tool]]\npath = \"lver.csv\"\n", "lver.csv"}})
-        try {
-            make(liver + more, scratch / ".");
-            ADD_FAILURE() << more;
-        } catch (const Error& error) {
-            const std::string said = error.what();
-            EXPECT_NE(said.find(words), std::string::npos) << said;
-            EXPECT_NE(said.find("test.toml, line 7"), std::string::npos) << said;
-            const bool near = said.find("iver.ply") != said.npos || said.find("lver.ply") != said.npos;
-            EXPECT_EQ(near, said.find("did you mean liver.ply?") != said.npos) << said;
-        }
-}
-
-// The message that making a scene is refused with.
-std::string refusal(const std::string& text, const std::filesystem::path& folder = ".") {
-    try {
-        make(text, folder);
-    } catch (const Error& error) {
-        return error.what();
+             {"[[tool]]\npath = \"lver.csv\"\n", "lver.csv"}}) {
+        const std::string said = refusal(liver + more, scratch / ".");
+        EXPECT_NE(said.find(words), std::string::npos) << more << said;
+        EXPECT_NE(said.find("test.toml, line 7"), std::string::npos) << said;
+        const bool near = said.find("iver.ply") != said.npos || said.find("lver.ply") != said.npos;
+        EXPECT_EQ(near, said.find("did you mean liver.ply?") != said.npos) << said;
     }
-    return "accepted";
 }
 
 TEST(Build, FilesOfAnotherKindAreNamedWithTheirLineAndWhatToWrite) {

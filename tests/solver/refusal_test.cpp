@@ -1,4 +1,6 @@
 // What a caller can get wrong is an Error that says so, before anything moves.
+#include "tests/refusal.h"
+
 #include "palpate/base/error.h"
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
@@ -20,21 +22,6 @@ namespace {
 const Material tissue{.youngs_modulus = 2000, .density = 1000, .damping = 40};
 constexpr float none = std::numeric_limits<float>::quiet_NaN(),
                 endless = std::numeric_limits<float>::infinity();
-
-// What an Error says, in one line; empty if there is none.
-std::string complaint(const std::function<void()>& act) {
-    try {
-        act();
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-        return error.what();
-    }
-    return {};
-}
-
-void expect_refused(const std::string& word, const std::function<void()>& act) {
-    EXPECT_NE(complaint(act).find(word), std::string::npos) << word << ": " << complaint(act);
-}
 
 class Refuses : public WithContext, public ::testing::WithParamInterface<Backend> {
  protected:

@@ -2,9 +2,9 @@
 // server makes them.
 #include "app/viewer/window.h"
 
-#include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 #include "tests/viewer/display.h"
@@ -184,12 +184,7 @@ TEST(NoWindow, WithoutADisplayItSaysSo) {
     const char* before = std::getenv("DISPLAY");
     const std::string kept = before ? before : "";
     setenv("DISPLAY", ":6553", 1);
-    try {
-        const palpate::Window window;
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("--headless"), std::string::npos) << error.what();
-    }
+    expect_refused("--headless", [] { const palpate::Window window; });
     before ? setenv("DISPLAY", kept.c_str(), 1) : unsetenv("DISPLAY");
 }
 
