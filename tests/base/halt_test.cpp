@@ -1,16 +1,14 @@
 // What is done before a process ends, however it ends: seen in a copy of this one.
 #include "palpate/base/halt.h"
 
+#include "tests/copy_of_process.h"
+
 #include <gtest/gtest.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
-#include <new>
 #include <stdexcept>
 #include <thread>
 
@@ -27,31 +25,12 @@ void note(Halt halt) noexcept { ++(halt == Halt::ended ? notes->ended : notes->p
 
 class OnHalt : public testing::Test {
  protected:
-    void SetUp() override {
-        void* room = mmap(nullptr, sizeof(Notes), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-        ASSERT_NE(room, MAP_FAILED);
-        notes = new (room) Notes;
-    }
-    void TearDown() override { munmap(notes, sizeof(Notes)); }
+    void SetUp() override { notes = &*notes_; }
 
-    // The status of a copy that lives so. It is silent, and leaves no core.
-    static int status_of(const std::function<void()>& life) {
-        const pid_t copy = start(life);
-        int status = 0;
-        waitpid(copy, &status, 0);
-        return status;
-    }
-    static pid_t start(const std::function<void()>& life) {
-        const pid_t copy = fork();
-        if (copy != 0) return copy;
-        alarm(20);  // whatever happens
-        if (!std::freopen("/dev/null", "w", stderr)) _exit(9);
-        life();
-        _exit(7);
-    }
-    static void wait_until_ready() {
-        for (int ms = 0; ms < 10'000 && notes->ready == 0; ++ms) usleep(1000);
-    }
+    // The status of a copy that lives so.
+    static int status_of(const std::function<void()>& life) { return wait_for(start_copy(life)); }
+
+    WithCopies<Notes> notes_;
 };
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -137,7 +116,7 @@ TEST_F(OnHalt, HandlersOfTheApplicationAreCalledAsBefore) {
 }
 
 TEST_F(OnHalt, IsCalledBeforeAPauseToo) {
-    const pid_t copy = start([] {
+    const pid_t copy = start_copy([] {
         setpgid(0, 0);
         on_halt(note);
         notes->ready = 1;
@@ -145,16 +124,15 @@ TEST_F(OnHalt, IsCalledBeforeAPauseToo) {
         notes->after = notes->paused.load();
         raise(SIGTSTP);
     });
-    int status = 0;
-    wait_until_ready();
+    wait_until([] { return notes->ready == 1; });
     for (int pause = 1; pause <= 2; ++pause) {
-        waitpid(copy, &status, WUNTRACED);
-        ASSERT_TRUE(WIFSTOPPED(status));
+        const int paused = wait_for(copy, WUNTRACED);
+        ASSERT_TRUE(WIFSTOPPED(paused));
         EXPECT_EQ(notes->paused, pause);
         kill(copy, SIGCONT);
     }
-    waitpid(copy, &status, 0);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7);
+    const int status = wait_for(copy);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == lived);
     EXPECT_EQ(notes->after, 1);
     EXPECT_EQ(notes->ended, 0);  // it went by _exit()
 }
@@ -164,8 +142,7 @@ TEST_F(OnHalt, ACopyOfTheProcessIsNotMeant) {
         on_halt(note);
         const pid_t copy = fork();
         if (copy == 0) raise(SIGTERM);
-        int status = 0;
-        waitpid(copy, &status, 0);
+        const int status = wait_for(copy);
         notes->after = notes->ended.load();
         notes->own = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
         raise(SIGTERM);

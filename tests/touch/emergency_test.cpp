@@ -4,19 +4,16 @@
 
 #include "palpate/base/clock.h"
 #include "palpate/touch/loop.h"
+#include "tests/copy_of_process.h"
 #include "tests/shapes.h"
 
 #include <gtest/gtest.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
-#include <new>
 #include <stdexcept>
 #include <thread>
 
@@ -63,37 +60,32 @@ TouchSettings at_once() {
 
 class Emergency : public testing::Test {
  protected:
-    void SetUp() override {
-        void* room = mmap(nullptr, sizeof(Motor), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-        ASSERT_NE(room, MAP_FAILED);
-        motor_ = new (room) Motor;
-    }
-    void TearDown() override { munmap(motor_, sizeof(Motor)); }
-
     // A copy that pushes, and then does that.
     pid_t start(bool lets_go, const std::function<void()>& then) {
         motor_->pushed = 0;
-        const pid_t copy = fork();
-        if (copy != 0) return copy;
-        alarm(30);      // whatever happens
-        setpgid(0, 0);  // so that a terminal's signals may pause it
-        if (!std::freopen("/dev/null", "w", stderr)) _exit(9);
-        if (lets_go) let_go_at_halt();
-        const Mesh mesh = block(vec3(-0.1f, -0.05f, -0.1f), vec3(0.1f, 0, 0.1f), 8);
-        const Touchable one[] = {{mesh.positions, mesh.triangles}};
-        Touch touch(std::make_unique<Pressing>(*motor_), at_once());
-        touch.feel(Patch(one));
-        const TouchLoop loop({&touch});
-        while (motor_->pushed == 0) usleep(1000);
-        then();
-        while (true) pause();
+        return start_copy([&] {
+            setpgid(0, 0);  // so that a terminal's signals may pause it
+            if (lets_go) let_go_at_halt();
+            const Mesh mesh = block(vec3(-0.1f, -0.05f, -0.1f), vec3(0.1f, 0, 0.1f), 8);
+            const Touchable one[] = {{mesh.positions, mesh.triangles}};
+            Touch touch(std::make_unique<Pressing>(*motor_), at_once());
+            touch.feel(Patch(one));
+            const TouchLoop loop({&touch});
+            while (motor_->pushed == 0) usleep(1000);
+            then();
+            while (true) pause();
+        });
     }
     void wait_until_it_pushes() {
-        for (int ms = 0; ms < 20'000 && motor_->pushed == 0; ++ms) usleep(1000);
+        wait_until([&] { return motor_->pushed == 1; });
         ASSERT_EQ(motor_->pushed, 1);
     }
+    static void end(pid_t copy) {
+        kill(copy, SIGKILL);
+        wait_for(copy);
+    }
 
-    Motor* motor_ = nullptr;
+    WithCopies<Motor> motor_;
 };
 
 TEST_F(Emergency, NoMotorHoldsAForceAfterTheProcess) {
@@ -108,8 +100,7 @@ TEST_F(Emergency, NoMotorHoldsAForceAfterTheProcess) {
     for (const auto& [name, end] : ends) {
         const pid_t copy = start(true, end);
         wait_until_it_pushes();
-        int status = 0;
-        waitpid(copy, &status, 0);
+        wait_for(copy);
         EXPECT_EQ(motor_->holds, 0) << name;
     }
 }
@@ -118,17 +109,15 @@ TEST_F(Emergency, NoMotorHoldsAForceAfterTheProcess) {
 TEST_F(Emergency, UnaskedTheLibraryTakesNoSignals) {
     const pid_t copy = start(false, [] { kill(getpid(), SIGKILL); });
     wait_until_it_pushes();
-    int status = 0;
-    waitpid(copy, &status, 0);
+    wait_for(copy);
     EXPECT_GT(motor_->holds, 0);
 }
 
 TEST_F(Emergency, APausedProcessHoldsNobodyAndBeginsAnew) {
     const pid_t copy = start(true, [] {});
     wait_until_it_pushes();
-    int status = 0;
     kill(copy, SIGTSTP);
-    waitpid(copy, &status, WUNTRACED);
+    const int status = wait_for(copy, WUNTRACED);
     ASSERT_TRUE(WIFSTOPPED(status));
     EXPECT_EQ(motor_->holds, 0);
     // The hand is still in the surface: no force until it was out.
@@ -137,23 +126,20 @@ TEST_F(Emergency, APausedProcessHoldsNobodyAndBeginsAnew) {
         usleep(1000);
         EXPECT_EQ(motor_->holds, 0);
     }
-    kill(copy, SIGKILL);
-    waitpid(copy, &status, 0);
+    end(copy);
 }
 
 // SIGSTOP cannot be caught. But when it goes on it begins anew.
 TEST_F(Emergency, AfterAStopThatNobodyHeardItBeginsAnew) {
     const pid_t copy = start(true, [] {});
     wait_until_it_pushes();
-    int status = 0;
     kill(copy, SIGSTOP);
-    waitpid(copy, &status, WUNTRACED);
+    wait_for(copy, WUNTRACED);
     usleep(30'000);
     kill(copy, SIGCONT);
-    for (int ms = 0; ms < 10'000 && motor_->holds > 0; ++ms) usleep(1000);
+    wait_until([&] { return motor_->holds == 0; });
     EXPECT_EQ(motor_->holds, 0);
-    kill(copy, SIGKILL);
-    waitpid(copy, &status, 0);
+    end(copy);
 }
 
 TEST_F(Emergency, LetsGoOfAllHandsThatAreThereAndOfNoOthers) {
