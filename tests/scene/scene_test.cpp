@@ -144,8 +144,11 @@ TEST(Scene, EveryNumberHasItsRangeAndItsUnit) {
              {"[[tool]]", "radius = 0", "tool.1.radius is 0 m"},
              {"[[tool]]", "stiffness = -4", "-4 N/m, which is not above 0"}})
         expect_words(refusal(small + table + "\n" + value + "\n"), {words, "test.toml, line 9"});
-    expect_words(refusal("[camera]\nup = [0, 0, 0]\n" + small), {"camera.up", "direction"});
-    expect_words(refusal("[light]\ndirection = [0, 0, 0]\n" + small), {"light.direction", "direction"});
+    expect_words(refusal("[camera]\nup = [0, 0, 0]\n" + small), {"camera.up", "line 2", "direction"});
+    expect_words(refusal("[camera]\neye = [0, 0, 1]\nlook_at = [0, 0, 1]\n" + small),
+                 {"camera.look_at", "line 3", "another point"});
+    expect_words(refusal("[light]\ndirection = [0, 0, 0]\n" + small),
+                 {"light.direction", "line 2", "direction"});
 }
 
 TEST(Scene, WholeNumbersMayBeWrittenAsOthersAre) {

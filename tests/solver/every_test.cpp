@@ -57,7 +57,7 @@ std::vector<std::pair<std::string, Body>> bodies() {
         {"cloth of triangles", cloth(disc(), linen)},
         {"net", net_body},
         {"single node", lattice({1, 1, 1}, 0.01f, tissue)},
-        {"empty", lattice({0, 0, 0}, 0.01f, tissue)}};
+        {"empty", net({}, {}, {})}};
 }
 
 std::vector<std::pair<std::string, Collider>> colliders() {
