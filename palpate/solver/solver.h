@@ -37,9 +37,9 @@ class Solver {
     virtual ~Solver() = default;
 
     /// Moves the body on by `seconds`, in equal steps no longer than the chosen one. Throws Error, and
-    /// nothing has moved, where `seconds` is not above zero or would be more than a billion steps, more act than most_presses or most_drags, an
-    /// influence is not finite or names a node that the body does not have, or colliders have not one motion
-    /// each.
+    /// nothing has moved, where `seconds` is not above zero or would be more than a billion steps, more act
+    /// than most_presses or most_drags, an influence is not finite or names a node that the body does not
+    /// have, or colliders have not one motion each.
     virtual Stats step(double seconds, const Influences& influences = {}) = 0;
 
     /// The longest step that step() would take with these, s.
