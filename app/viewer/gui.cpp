@@ -107,7 +107,8 @@ void show_import(Viewer& viewer) {
 void show_message(const Viewer& viewer, float scale) {
     const Viewer::Message& message = viewer.message();
     const double age = now() - message.since;
-    if (message.text.empty() || age > (message.bad ? 20 : 6)) return;
+    const bool is_long = message.bad || message.text.find('\n') != std::string::npos;
+    if (message.text.empty() || age > (is_long ? 20 : 6)) return;
     over_picture(viewer, float(viewer.size().y) - 12 * scale, 1);
     ImGui::Begin("message", nullptr, bare | ImGuiWindowFlags_NoInputs);
     ImGui::PushTextWrapPos(0.7f * float(viewer.size().x));

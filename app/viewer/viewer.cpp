@@ -5,12 +5,14 @@
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
 #include "palpate/run/framing.h"
+#include "palpate/run/notes.h"
 #include "palpate/run/run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <thread>
 #include <utility>
 
@@ -172,8 +174,11 @@ void Viewer::begin(Prepared prepared) {
     for (const ToolRecipe& tool : scene.tools)
         if (tool.kind != ToolKind::drag) options.tip = tool.radius;
     options.paused = false;
-    const auto& notes = experiment_->models().notes;
-    say(notes.empty() ? (replay_ ? "replaying " : "opened ") + experiment_->source().name : notes.front());
+    std::vector<std::string> notes = experiment_->models().notes;
+    std::ranges::move(notes_before(scene, experiment_->models()), std::back_inserter(notes));
+    std::string opened = (replay_ ? "replaying " : "opened ") + experiment_->source().name;
+    for (const std::string& note : notes) opened += "\n" + note;
+    say(opened);
 }
 
 // ---- the scene beside it ----

@@ -60,6 +60,11 @@ TouchSettings at_once() {
 
 class Emergency : public testing::Test {
  protected:
+    void SetUp() override {
+#ifdef __SANITIZE_THREAD__
+        GTEST_SKIP() << "not available: under the thread sanitizer a copy of a process can start no thread";
+#endif
+    }
     // A copy that pushes, and then does that.
     pid_t start(bool lets_go, const std::function<void()>& then) {
         motor_->pushed = 0;
