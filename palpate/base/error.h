@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -15,5 +16,10 @@ class Error : public std::runtime_error {
     /// The line of an Error that was thrown in another process.
     explicit Error(const std::string& line);
 };
+
+/// For messages: "1 file", "3 files".
+inline std::string counted(std::size_t count, std::string_view one) {
+    return std::to_string(count) + ' ' + std::string(one) + (count == 1 ? "" : "s");
+}
 
 }  // namespace palpate

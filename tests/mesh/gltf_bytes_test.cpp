@@ -78,7 +78,7 @@ TEST(Gltf, StripsFansPointsAndLines) {
     file.primitive()["mode"] = 4;
     notes.clear();
     EXPECT_EQ(file.read(&notes).triangles.size(), 1u);
-    EXPECT_HAS(notes[0], "left out 1 corners that make no whole triangle");
+    EXPECT_HAS(notes[0], "left out 1 corner beyond the last whole triangle");
     file.primitive()["mode"] = 7;
     EXPECT_HAS(file.refused(), "unknown mode 7");
 }

@@ -179,7 +179,7 @@ TEST(Gltf, TheSceneThatTheFileShows) {
     std::vector<std::string> notes;
     expect_box(file.read(&notes), vec3(10, 0, 0), vec3(12, 3, 5), 30);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_HAS(notes[0], "left out 1 scenes");
+    EXPECT_HAS(notes[0], "left out 1 scene ");
     file.json.erase("scene");
     file.json.erase("scenes");
     expect_box(file.read(), vec3(0), vec3(12, 3, 5), 60);
@@ -196,7 +196,7 @@ TEST(Gltf, NodesThatAreNotVisibleAreLeftOut) {
     std::vector<std::string> notes;
     expect_box(file.read(&notes), vec3(0), vec3(2, 3, 5), 30);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_HAS(notes[0], "left out 1 nodes that are not visible");
+    EXPECT_HAS(notes[0], "left out 1 invisible node");
 }
 
 TEST(Gltf, ASceneWithoutAMeshGivesWayToOneThatHasSome) {

@@ -199,7 +199,7 @@ TEST(Obj, WhatBearsOnNoShapeCostsNone) {
     expect_brick("a.obj", points + "vn 0 0 1\nvn 0 0\n" + normals, "left the normals out");
     expect_brick("a.obj", points + "vn 0 0 1\nvn 0 0 x\n" + normals, "left the normals out");
     expect_brick("a.obj", points + faces + "cstype bspline\nsurf 0 1 0 1 1 2 3 4\nend\n",
-                 "left out 1 free-form curves and surfaces");
+                 "left out 1 free-form shape");
     expect_brick("a.obj", points + rows_of(brick.triangles, 1, "fo"));
     expect_brick("a.obj", old_macintosh(points + faces));
     expect_brick("a.obj", rows_of(brick.positions, "v ", " 0.5 0.5 0.5 # red\n") +
@@ -415,10 +415,10 @@ TEST(Stl, TextAsStrangersWriteIt) {
     expect_brick("a.stl", stl_text("facet normal 0 0 1", "facet"));
     expect_brick("a.stl", stl_text("facet normal 0 0 1", "facet normal"));
     expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\ncolor 0.7 0.7 0.7\nfacet"),
-                 "read over 1 lines that are no part of a shape, the first with \"color\"");
+                 "read over 1 line outside of any shape, the first with \"color\"");
     expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\n# in mm\nfacet"), "the first with \"#\"");
     expect_brick("a.stl", stl_text("endfacet", "attribute 0 vertex 1 2 3\nendfacet"), "read over 12 lines");
-    expect_brick("a.stl", "# by hand\n\n" + stl_text(), "read over 1 lines");
+    expect_brick("a.stl", "# by hand\n\n" + stl_text(), "read over 1 line");
     expect_brick("a.stl", stl_text("endsolid box\n", ""), "ends without \"endsolid\"");
     std::string in_one_line = stl_text();
     std::replace(in_one_line.begin(), in_one_line.end(), '\n', ' ');

@@ -113,7 +113,7 @@ TEST(ThreeMf, WhatIsLeftOutIsSaid) {
         "<object id='2' type='support'>" + mesh_of_3mf(box(vec3(0), brick)) + "</object>";
     expect_brick_of(parse(model(one + support, built + "<item objectid='2'/>"), &notes), 1e-3);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_HAS(notes[0], "left out 1 objects that are supports");
+    EXPECT_HAS(notes[0], "left out 1 support");
     notes.clear();
     expect_brick_of(parse(model(one, ""), &notes), 1e-3);
     ASSERT_EQ(notes.size(), 1u);

@@ -1,5 +1,6 @@
 #include "palpate/mesh/formats/dicom.h"
 
+#include "palpate/base/error.h"
 #include "palpate/mesh/formats/voxels.h"
 
 #include <fmt/format.h>
@@ -74,10 +75,6 @@ std::vector<std::filesystem::path> dicom_files_below(const std::filesystem::path
 // ---- one series ----
 
 std::string name(const Slice& slice) { return slice.file.filename().string(); }
-
-std::string counted(std::size_t count, const char* one) {
-    return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
-}
 
 // Groups in which each slice is alike to the first, in the order of their first.
 template <class Alike>

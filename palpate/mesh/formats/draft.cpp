@@ -126,7 +126,8 @@ Mesh finish(const Draft& draft, std::optional<Units> units, const std::string& n
     if (mesh.triangles.empty()) throw only_points_or_lines(name);
     const auto small = [](Index corners) { return corners < 3; };
     if (const std::size_t count = draft.loose + std::size_t(std::ranges::count_if(draft.sizes, small)))
-        said.push_back(fmt::format("left out {} points and lines", count));
+        said.push_back(count == 1 ? "left out a point or a line"
+                                  : fmt::format("left out {} points and lines", count));
     for (vec3& p : mesh.positions) p *= float(scale);
     mesh.normals = attribute(draft.normals, "normals", said);
     mesh.uvs = attribute(draft.uvs, "texture coordinates", said);

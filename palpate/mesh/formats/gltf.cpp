@@ -1,6 +1,7 @@
 // The surfaces of a glTF 2.0 file at rest: what places vertices is obeyed (nodes, skins, weights of morph
 // targets, instances), what gives them a look is read over, and a file that requires what is not known here
 // is refused.
+#include "palpate/base/error.h"
 #include "palpate/mesh/formats/formats.h"
 #include "palpate/mesh/formats/gltf_file.h"
 #include "palpate/mesh/formats/place.h"
@@ -159,7 +160,7 @@ class Gltf {
         }
         if (scenes.size() > 1)
             draft_.notes.push_back(
-                fmt::format("left out {} scenes beside the one that is read", scenes.size() - 1));
+                fmt::format("left out {} beside the one that is read", counted(scenes.size() - 1, "scene")));
         return shown;
     }
 
@@ -428,17 +429,16 @@ class Gltf {
 
     // What some parts lack is left out of all, and what is left out is told.
     void leave_out() {
-        const auto note = [&](std::size_t count, fmt::format_string<std::size_t&> text) {
-            if (count > 0) draft_.notes.push_back(fmt::format(text, count));
+        const auto note = [&](std::size_t count, fmt::format_string<std::string> text, const char* one) {
+            if (count > 0) draft_.notes.push_back(fmt::format(text, counted(count, one)));
         };
         if (!has_normals_) draft_.normals.clear();
         if (!has_uvs_ && !draft_.uvs.empty())
             draft_.notes.push_back("left the texture coordinates out: some parts have none");
         if (!has_uvs_) draft_.uvs.clear();
-        note(hidden_,
-             "left out {} nodes that are not visible (KHR_node_visibility), with what hangs on them");
-        note(unfinished_, "left out {} corners that make no whole triangle");
-        note(uncopied_, "left out the copies (EXT_mesh_gpu_instancing) of {} meshes with a skin");
+        note(hidden_, "left out {} (KHR_node_visibility), with all that hangs there", "invisible node");
+        note(unfinished_, "left out {} beyond the last whole triangle", "corner");
+        note(uncopied_, "left out the copies (EXT_mesh_gpu_instancing) of {}", "skinned surface");
     }
 
     GltfFile file_;

@@ -1,3 +1,4 @@
+#include "palpate/base/error.h"
 #include "palpate/mesh/formats/formats.h"
 
 #include <fmt/format.h>
@@ -145,7 +146,7 @@ class Obj {
             draft.notes.push_back("the last line may be cut off: a face of fewer corners, without an end");
         draft.loose = loose_;
         if (free_forms_ > 0)
-            draft.notes.push_back(fmt::format("left out {} free-form curves and surfaces", free_forms_));
+            draft.notes.push_back(fmt::format("left out {}", counted(free_forms_, "free-form shape")));
         const std::vector<Index> position = firsts(positions_), uv = firsts(uvs_), normal = firsts(normals_);
         std::vector<uvec3> corners(corners_.size(), uvec3(0));
         for (std::size_t i = 0; i < corners.size(); ++i) {

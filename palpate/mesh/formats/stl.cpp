@@ -1,3 +1,4 @@
+#include "palpate/base/error.h"
 #include "palpate/mesh/formats/formats.h"
 
 #include <fmt/format.h>
@@ -17,11 +18,11 @@ static_assert(std::endian::native == std::endian::little, "a binary STL is read 
 
 // A binary file: 80 bytes of anything, the number of facets, then for each a normal, three corners, two
 // bytes.
-constexpr std::size_t header = 80, counted = header + 4, facet = 50;
+constexpr std::size_t header = 80, head_bytes = header + 4, facet = 50;
 
 std::size_t promised(std::string_view bytes) {
     std::uint32_t count = 0;
-    if (bytes.size() >= counted) std::memcpy(&count, bytes.data() + header, sizeof count);
+    if (bytes.size() >= head_bytes) std::memcpy(&count, bytes.data() + header, sizeof count);
     return count;
 }
 
@@ -54,9 +55,9 @@ bool is_plain_text(std::string_view bytes) {
 
 Draft read_binary(const Source& source) {
     const std::string_view bytes = source.whole();
-    if (bytes.size() < counted) source.broken("neither a text nor a binary STL");
-    const std::size_t there = (bytes.size() - counted) / facet;
-    const bool uncounted = promised(bytes) == 0 && there > 0 && bytes.size() == counted + facet * there;
+    if (bytes.size() < head_bytes) source.broken("neither a text nor a binary STL");
+    const std::size_t there = (bytes.size() - head_bytes) / facet;
+    const bool uncounted = promised(bytes) == 0 && there > 0 && bytes.size() == head_bytes + facet * there;
     const std::size_t count = uncounted ? there : promised(bytes);
     if (count > there && is_plain_text(bytes.substr(0, 1000)))
         source.broken("a text that is no STL", "give it the ending of its format");
@@ -67,14 +68,14 @@ Draft read_binary(const Source& source) {
     if (uncounted)
         draft.notes.push_back(
             fmt::format("read the {} facets that are there: the file says it has none", there));
-    if (const std::size_t left = bytes.size() - counted - count * facet; left >= facet)
+    if (const std::size_t left = bytes.size() - head_bytes - count * facet; left >= facet)
         draft.notes.push_back(
             fmt::format("left out {} bytes behind the {} facets that the file says it has", left, count));
     draft.sizes.assign(count, 3);
     draft.positions.reserve(3 * count);
     for (std::size_t i = 0; i < count; ++i) {
         std::array<vec3, 3> corners;
-        std::memcpy(&corners, bytes.data() + counted + i * facet + sizeof(vec3), sizeof corners);
+        std::memcpy(&corners, bytes.data() + head_bytes + i * facet + sizeof(vec3), sizeof corners);
         for (vec3 p : corners) {
             draft.corners.push_back(Index(draft.positions.size()));
             draft.positions.emplace_back(p);
@@ -96,9 +97,8 @@ class StlText {
         if (in_solid_)
             draft_.notes.push_back("the text ends without \"endsolid\": facets may be missing from the file");
         if (!others_.empty())
-            draft_.notes.push_back(
-                fmt::format("read over {} lines that are no part of a shape, the first with {}",
-                            others_.size(), in_quotes(others_.front())));
+            draft_.notes.push_back(fmt::format("read over {} outside of any shape, the first with {}",
+                                               counted(others_.size(), "line"), in_quotes(others_.front())));
         return std::move(draft_);
     }
 
@@ -178,7 +178,7 @@ class StlText {
 Draft read_stl(Source source) {
     // Many a binary file begins with "solid" too. What has just the size that it promises is binary.
     const std::string_view bytes = source.whole();
-    if (bytes.size() >= counted && bytes.size() == counted + facet * promised(bytes))
+    if (bytes.size() >= head_bytes && bytes.size() == head_bytes + facet * promised(bytes))
         return read_binary(source);
     source.skip_mark();
     return is_text(source.rest) ? StlText(std::move(source)).read() : read_binary(source);

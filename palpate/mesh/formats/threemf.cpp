@@ -2,6 +2,7 @@
 // others, and of what is built of them. Read are meshes, components, their places and the unit, also where
 // objects lie in files of their own (the production extension); colours and what belongs to printing are read
 // over.
+#include "palpate/base/error.h"
 #include "palpate/mesh/formats/budget.h"
 #include "palpate/mesh/formats/formats.h"
 #include "palpate/mesh/formats/place.h"
@@ -104,9 +105,9 @@ class ThreeMf {
         tell_of_modifiers();
         if (build_.empty()) build_all();
         for (const Part& item : build_) add(item.object, item.place, 0);
-        if (supports_ > 0)
-            draft_.notes.push_back(fmt::format("left out {} objects that are supports", supports_));
-        if (beams_ > 0) draft_.notes.push_back(fmt::format("left out {} beams of a lattice", beams_));
+        if (supports_ > 0) draft_.notes.push_back(fmt::format("left out {}", counted(supports_, "support")));
+        if (beams_ > 0)
+            draft_.notes.push_back(fmt::format("left out {} of a lattice", counted(beams_, "beam")));
         return std::move(draft_);
     }
 
