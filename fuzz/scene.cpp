@@ -1,4 +1,4 @@
-// Any text as a scene: an Error of one line, or a scene with a body.
+// Any text as a scene: an Error of one line, or a scene with a body or a surface.
 #include "palpate/scene/scene.h"
 
 #include "palpate/base/error.h"
@@ -10,7 +10,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);
     try {
-        if (palpate::parse_scene(text, "fuzz.toml", "/nowhere").bodies.empty()) std::abort();
+        const palpate::Scene scene = palpate::parse_scene(text, "fuzz.toml", "/nowhere");
+        if (scene.bodies.empty() && scene.surfaces.empty()) std::abort();
     } catch (const palpate::Error& error) {
         if (std::string_view(error.what()).find_first_of("\n\r") != std::string_view::npos) std::abort();
     }
