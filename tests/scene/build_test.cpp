@@ -396,7 +396,7 @@ TEST(Build, WhatAColliderLeavesOutOfItsFileIsSaid) {
     const Scratch scratch;
     write_text(scratch / "plate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
     EXPECT_TRUE(has_note(make(cube + "[[collider]]\npolygon = { surface = \"plate.obj\" }\n", scratch / "."),
-                         "collider 1: left out 1"));
+                         "collider 1: left out a point or a line"));
 }
 
 TEST(Build, CollidersFromFiles) {
