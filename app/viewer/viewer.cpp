@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <thread>
 #include <utility>
 
@@ -174,10 +173,8 @@ void Viewer::begin(Prepared prepared) {
     for (const ToolRecipe& tool : scene.tools)
         if (tool.kind != ToolKind::drag) options.tip = tool.radius;
     options.paused = false;
-    std::vector<std::string> notes = experiment_->models().notes;
-    std::ranges::move(notes_before(scene, experiment_->models()), std::back_inserter(notes));
     std::string opened = (replay_ ? "replaying " : "opened ") + experiment_->source().name;
-    for (const std::string& note : notes) opened += "\n" + note;
+    for (const std::string& note : notes_before(scene, experiment_->models())) opened += "\n" + note;
     say(opened);
 }
 

@@ -210,7 +210,7 @@ std::string how_to_ask_less(const Scene& scene, const Report& report) {
 
 std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
     constexpr float widest_gap = 0.7f;  // of the spacing: half the way across a square of nodes
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = made.notes;
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const Body& body = made.models[m].body;
         if (!is_held(scene, made, m))

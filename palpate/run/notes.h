@@ -8,8 +8,8 @@ namespace palpate {
 
 // What the user of a run should know: of what is likely to go wrong, and of what probably did.
 
-/// Before it: bodies that nothing holds; bodies that a collider holds inside it; tips and obstacles so small
-/// that they fit between the nodes.
+/// Before it: what building it found (Models::notes); bodies that nothing holds; bodies that a collider holds
+/// inside it; tips and obstacles so small that they fit between the nodes.
 std::vector<std::string> notes_before(const Scene& scene, const Models& made);
 
 /// After it: cells that were inside out, bodies that went away, tools that touched nothing, obstacles so thin

@@ -301,8 +301,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     check_outputs(scene, settings);
 
     const Models made = build(scene, progress);
-    report.notes = made.notes;
-    for (std::string& note : notes_before(scene, made)) report.notes.push_back(std::move(note));
+    report.notes = notes_before(scene, made);
     const auto known_before = std::ptrdiff_t(report.notes.size());
     std::optional<gl::Context> context;  // in which a GPU moves the bodies, and pictures are drawn
     if (on_gpu(made.simulation.backend)) report.renderer = context.emplace().renderer();

@@ -129,6 +129,16 @@ TEST_F(ViewerTest, ABrokenFileIsSaidAndWhatWasOpenStays) {
     }
 }
 
+TEST_F(ViewerTest, TellsTheNotesOfARun) {
+    viewer.open(
+        {"[[body]]\nname = \"loose\"\ndims = [3, 3, 3]\nspacing = 0.01\nyoungs_modulus = 5000\ndensity = "
+         "1000\n",
+         "loose.toml", "."});
+    wait_until_open(viewer);
+    EXPECT_NE(viewer.message().text.find("nothing holds it"), std::string::npos) << viewer.message().text;
+    EXPECT_FALSE(viewer.message().bad);
+}
+
 TEST_F(ViewerTest, AMeshBecomesABodyAndCanBeCancelled) {
     const Scratch scratch;
     const Mesh ball = ellipsoid(vec3(1), 30);
