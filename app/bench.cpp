@@ -2,7 +2,7 @@
 #include "bench/speed/speed.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
-#include "palpate/solver/cpu/cpu.h"
+#include "palpate/solver/machine.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 #include "palpate/body/cloth.h"
 #include "palpate/gl/context.h"
 #include "palpate/render/renderer.h"
-#include "palpate/solver/cpu/cpu.h"
+#include "palpate/solver/machine.h"
 #include "palpate/solver/solver.h"
 #include "palpate/touch/devices/script.h"
 #include "palpate/touch/loop.h"

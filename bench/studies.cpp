@@ -3,7 +3,7 @@
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/solver/reference/reference.h"
+#include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ constexpr double pi = 3.14159265358979;
 State swing(const Body& body, Integrator integrator, int steps) {
     const double seconds = 0.25;
     Simulation simulation{.integrator = integrator, .step = seconds / steps};
-    auto solver = make_reference<double>(body, simulation, 0);
+    auto solver = make_exact_solver(body, simulation, 0);
     solver->step(seconds);
     return solver->state();
 }
@@ -75,8 +75,7 @@ bool grows(const Body& rest, Integrator integrator, double step) {
     const float slightly = 1e-7f;
     Body body = rest;
     shake(body, slightly);
-    auto solver =
-        make_reference<double>(body, {.integrator = integrator, .step = step, .gravity = vec3(0)}, 0);
+    auto solver = make_exact_solver(body, {.integrator = integrator, .step = step, .gravity = vec3(0)}, 0);
     double largest[4] = {};
     for (int i = 0; i < 60; ++i) {
         if (solver->step(100 * step).diverged) return true;
@@ -119,7 +118,7 @@ Growth growth_per_step(Integrator integrator, double step) {
     Body body = lattice({2, 1, 1}, 0.1f, {.stiffness = 50, .mass = 0.4f});
     const double frequency = highest_frequency(body), seconds = step / frequency;
     body.positions[1].x += 1e-6f;
-    auto solver = make_reference<double>(
+    auto solver = make_exact_solver(
         body, {.integrator = integrator, .step = seconds, .gravity = vec3(0), .frame = 1}, frequency);
     auto size = [&] {  // of the vibration: displacement and velocity together
         const State s = solver->state();
@@ -150,7 +149,7 @@ double pulse_speed(bool shear) {
     // It parts into two halves; the one to the right is found again by its middle, before the sides of the
     // lattice are heard along its axis.
     const double seconds = 11 * h / speed;
-    auto solver = make_reference<double>(body, {.step = seconds / 200, .gravity = vec3(0)}, 0);
+    auto solver = make_exact_solver(body, {.step = seconds / 200, .gravity = vec3(0)}, 0);
     solver->step(seconds);
     const State state = solver->state();
     double sum = 0, weight = 0;
@@ -183,7 +182,7 @@ double cantilever_sag(int cells) {
                         {.youngs_modulus = modulus, .density = density, .damping = float(2 * slowest)});
     pin(body, nodes_in(body, {vec3(-1), vec3(0.1f * h, 1, 1)}));
     Simulation simulation{.gravity = vec3(0, -gravity, 0)};
-    auto solver = make_reference<double>(body, simulation, highest_frequency(body));
+    auto solver = make_exact_solver(body, simulation, highest_frequency(body));
     solver->step(1.6 * 2 * pi / slowest);
     const State state = solver->state();
     double sag = 0;
@@ -200,7 +199,7 @@ Swing energy_swing(Integrator integrator, int steps) {
     Body body = lattice({3, 2, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
     const double frequency = highest_frequency(body);
     for (vec3& p : body.positions) p *= vec3(1.02f, 0.99f, 1.01f);
-    auto solver = make_reference<double>(body, {.integrator = integrator, .gravity = vec3(0)}, frequency);
+    auto solver = make_exact_solver(body, {.integrator = integrator, .gravity = vec3(0)}, frequency);
     const double step = solver->longest_step();
     const Energy e = energy(body, solver->state());
     const double first = e.kinetic + e.elastic;

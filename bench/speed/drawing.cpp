@@ -111,10 +111,9 @@ Case repeating(std::string name, std::function<void()> once, const gl::Context* 
 
 Case steps(std::string name, const Body& body, const Machine& machine, const Machine::Mover& mover,
            Integrator integrator) {
-    Case timed =
-        stepping(std::move(name), body,
-                 {.backend = mover.backend, .threads = mover.threads, .integrator = integrator, .late = true},
-                 machine.gl());
+    Case timed = stepping(std::move(name), body,
+                          {.backend = mover.backend, .threads = mover.threads, .integrator = integrator},
+                          machine.gl());
     const double nodes = double(body.count());
     timed.run = [run = std::move(timed.run), nodes] {
         const Work work = run();

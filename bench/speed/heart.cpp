@@ -75,7 +75,6 @@ Subject the_dragon() {
 Simulation with(const Machine::Mover& mover) {
     return {.backend = mover.backend,
             .threads = mover.threads,
-            .late = true,
             .step = one_step,
             .force = true,
             .frame = steps_a_frame * one_step};

@@ -33,7 +33,6 @@ Case frame(int grid, const Body& body, const Machine& machine, const Machine::Mo
     const Simulation how{.backend = mover.backend,
                          .threads = mover.threads,
                          .integrator = integrator,
-                         .late = true,
                          .step = frame_step,
                          .force = true,
                          .frame = frame_step};

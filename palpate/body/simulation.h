@@ -54,9 +54,6 @@ struct Simulation {
     int threads =
         1;  // of the backend cpu, at most most_threads; the motion is the same to the bit with any number
     Integrator integrator = Integrator::verlet;
-    /// A GPU need not be waited for: then Stats tell of the call before, and a motion that blew up is found a
-    /// call late.
-    bool late = false;
     double step = 0;                    // s; 0 chooses 0.7 of the stability bound
     bool force = false;                 // accept a step above the bound
     vec3 gravity = vec3(0, -9.81f, 0);  // m/s²

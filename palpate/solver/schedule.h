@@ -1,9 +1,10 @@
 #pragma once
+#include "palpate/body/influences.h"
+#include "palpate/solver/guides.h"
 #include "palpate/solver/pass.h"
 #include "palpate/solver/scheme.h"
-#include "palpate/solver/solver.h"
 
-#include <optional>
+#include <span>
 
 namespace palpate {
 
@@ -23,27 +24,29 @@ struct Turn {
     double impulse;         // s, over which its forces give momentum to the nodes
 };
 
-/// One call of Solver::step, as every backend goes through it.
+/// One call of Solver::step, as every machine goes through it.
 struct Call {
     const Scheme& scheme;
     const Simulation& simulation;
     const Influences& influences;
-    double damping;  // 1/s, the body's
-    double step;     // s
+    std::span<const Guide> guides;  // of the nodes of inverse mass 0
+    Pass constant;                  // what all of its passes have alike
+    double step;                    // s
     int steps;
     double lag;  // s, of the velocities when it begins
 
     /// Runs every pass of every step in turn, run(const Pass&, const Turn&): the neighbours move too. Tools
     /// and colliders stand where they are by then.
     template <class Run>
-    void for_each_pass(Pass pass, Run run) const {
+    void for_each_pass(Run run) const {
+        Pass pass = constant;
         for (int i = 0; i < steps; ++i) {
             double reached = 0;  // by the last stage, in steps
             Where at = current;
             for (const Stage& stage : scheme.stages) {
                 const bool last = &stage == &scheme.stages.back();
                 const double behind = i == 0 ? lag : lag_after();
-                pass.kick = float(scheme.kick(stage, step, behind, damping));
+                pass.kick = float(scheme.kick(stage, step, behind, constant.damping));
                 pass.drift = float(stage.drift * step);
                 pass.lead = float(stage.lead);
                 pass.part = float(stage.part * step);
@@ -64,33 +67,5 @@ struct Call {
     /// s, of the velocities when it has ended.
     double lag_after() const { return scheme.staggered ? step / 2 : 0; }
 };
-
-/// The longest step that a solver takes under influences. Finding it takes longer than a step of a small body
-/// does, so it is found again only when what it depends on has changed: how strong presses and drags are.
-class LongestStep {
- public:
-    /// `frequency`: the body's highest, rad/s. Body and simulation have to outlive it.
-    LongestStep(const Body& body, const Simulation& simulation, double frequency)
-        : body_(body), simulation_(simulation), frequency_(frequency) {}
-
-    double under(const Influences& influences);  // s
-
- private:
-    struct Found {
-        float contact, pull;
-        double step;
-    };
-
-    const Body& body_;
-    const Simulation& simulation_;
-    double frequency_;
-    std::optional<Found> last_;
-};
-
-/// What a call is about to report: its steps, no longer than `longest` (s), and nothing yet of what they do.
-Stats about_to_do(const Influences& influences, double seconds, double longest);
-
-/// What it reports if the motion has blown up and all is as it was before.
-Stats undone(const Stats& stats);
 
 }  // namespace palpate

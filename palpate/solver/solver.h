@@ -3,8 +3,12 @@
 #include "palpate/body/influences.h"
 #include "palpate/body/nodes.h"
 #include "palpate/body/simulation.h"
+#include "palpate/solver/guides.h"
+#include "palpate/solver/longest_step.h"
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace palpate {
@@ -12,15 +16,16 @@ namespace palpate {
 namespace gl {
 class Context;
 }
+class Machine;
+struct Scheme;
 
 /// What one call of Solver::step did.
 struct Stats {
     int steps = 0;
     double step = 0;           // s, the length of each
-    bool late = false;         // what follows tells of the call before this one (Simulation::late)
     double largest_speed = 0;  // m/s, of any node at the end
     double largest_move = 0;   // m, of any node in the last step
-    bool diverged = false;     // the motion blew up; the state is that from before the call that it tells of
+    bool diverged = false;     // the motion blew up; the state is that from before the call
     std::vector<dvec3>
         reactions;  // N s, one a press: the impulse that the body gave to the tip; its opposite it got
     std::vector<dvec3> pulls;  // N s, one a drag, likewise
@@ -30,49 +35,76 @@ struct Stats {
 /// where they would be more than a billion.
 int steps_within(double seconds, double longest);
 
-/// Owns a body's moving state on one backend and moves it. What happens in a step never throws, unless a
-/// graphics card is lost; what a caller hands in is looked at before anything moves.
-class Solver {
+/// Owns a body's moving state and moves it: what a step is, on whatever machine. What happens in a step never
+/// throws, unless a graphics card is lost; what a caller hands in is looked at before anything moves.
+class Solver final {
  public:
-    virtual ~Solver() = default;
+    using MakeMachine = std::function<std::unique_ptr<Machine>(const Body&, const Simulation&)>;
+
+    /// On a machine of the caller's choice; no step is too long here. Throws Error if body or simulation hold
+    /// what cannot be (check()). `frequency`: the body's highest, rad/s.
+    Solver(const Body& body, const Simulation& simulation, double frequency, const MakeMachine& make);
+    ~Solver();
+    Solver(const Solver&) = delete;
+    Solver& operator=(const Solver&) = delete;
 
     /// Moves the body on by `seconds`, in equal steps no longer than the chosen one. Throws Error, and
     /// nothing has moved, where `seconds` is not above zero or would be more than a billion steps, more act
     /// than most_presses or most_drags, an influence is not finite or names a node that the body does not
     /// have, or colliders have not one motion each.
-    virtual Stats step(double seconds, const Influences& influences = {}) = 0;
+    Stats step(double seconds, const Influences& influences = {});
 
     /// The longest step that step() would take with these, s.
-    virtual double longest_step(const Influences& influences = {}) const = 0;
+    double longest_step(const Influences& influences = {}) const { return longest_.under(influences); }
 
     /// The highest frequency of the body's free motion, rad/s (stability.h).
-    virtual double frequency() const = 0;
+    double frequency() const { return frequency_; }
 
     /// Puts back what was before the last call of step(). Throws Error where that is put back already: after
     /// restore(), or when the motion blew up.
-    virtual void undo() = 0;
+    void undo();
 
     /// Where the nodes are now; valid until the next step. From a GPU they are read back, once a step.
-    virtual Nodes nodes() const = 0;
+    Nodes nodes() const;
 
-    /// The same where they are, on a GPU; valid until the next step. None from a backend of the CPU.
-    virtual GpuNodes gpu_nodes() const { return {}; }
+    /// The same where they are, on a GPU; valid until the next step. None from a machine of the CPU.
+    GpuNodes gpu_nodes() const;
 
     /// Positions and velocities at the same moment, whatever the integrator's own bookkeeping; as if tips,
     /// drags, wind and colliders were gone just then: with Verlet a node at rest on the ground shows half a
     /// step of gravity.
-    virtual State state() const = 0;
+    State state() const;
 
     /// The state as the integrator keeps it, to the bit: going on from it after restore() is going on from
     /// here.
-    virtual State save() const = 0;
+    State save() const;
 
-    /// Goes on from a state of the same body, from save() or state() of any integrator and backend. Throws
+    /// Goes on from a state of the same body, from save() or state() of any integrator and machine. Throws
     /// Error if it is of another number of nodes.
-    virtual void restore(const State& state) = 0;
+    void restore(const State& state);
 
-    /// Bytes that the moving state and the springs take on this backend.
-    virtual std::size_t memory() const = 0;
+    /// Bytes that the moving state and the springs take on this machine.
+    std::size_t memory() const;
+
+ private:
+    // What a call began with, besides the machine's own.
+    struct Before {
+        double lag;
+        Guides guides;
+    };
+    std::vector<dvec3> velocities_now() const;
+
+    const Body body_;
+    const Simulation simulation_;
+    const Scheme& scheme_;
+    const double frequency_;  // rad/s, the highest of the body with nothing touching it
+    mutable LongestStep longest_{body_, simulation_, frequency_};
+    std::unique_ptr<Machine> machine_;
+    Guides guides_;
+    double lag_ = 0;                                 // s, how far the velocities are behind the positions
+    std::optional<Before> before_;                   // the last call, if that can be put back
+    mutable std::vector<vec3> positions_, normals_;  // what nodes() shows
+    mutable bool shown_ = false;
 };
 
 /// Throws Error if body or simulation hold what cannot be (check()), if a step above the stability bound is
@@ -82,5 +114,10 @@ class Solver {
 /// `frequency`: the body's highest, if it is known; finding it takes longer than all the rest.
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
                                     const gl::Context* context = nullptr, double frequency = 0);
+
+/// The reference in double, which shows orders of convergence without rounding in the way. It takes any step;
+/// `frequency` is needed where it shall choose one.
+std::unique_ptr<Solver> make_exact_solver(const Body& body, const Simulation& simulation,
+                                          double frequency = 0);
 
 }  // namespace palpate

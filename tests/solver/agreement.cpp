@@ -1,7 +1,6 @@
 #include "tests/solver/agreement.h"
 
 #include "palpate/body/select.h"
-#include "palpate/solver/reference/reference.h"
 #include "palpate/solver/stability.h"
 #include "tests/shapes.h"
 
@@ -172,7 +171,7 @@ void expect_same(Solver& solver, const Body& body, const Acting& on, const Simul
     Solver* const a = &solver;
     const double seconds = steps * fast.step;
     auto b = make_solver(body, slow);
-    auto exact = make_reference<double>(body, slow, highest_frequency(body));
+    auto exact = make_exact_solver(body, slow, highest_frequency(body));
     const Stats of_a = a->step(seconds, on.influences()), of_b = b->step(seconds, on.influences()),
                 of_exact = exact->step(seconds, on.influences());
     ASSERT_FALSE(of_a.diverged || of_b.diverged || of_exact.diverged);

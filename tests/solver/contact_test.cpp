@@ -2,7 +2,6 @@
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/solver/reference/reference.h"
 #include "palpate/solver/solver.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
@@ -35,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Contact, ::testing::ValuesIn(every_integrator())
 
 std::unique_ptr<Solver> solver_for(const Body& body, Integrator integrator, double step,
                                    std::vector<Collider> colliders, vec3 gravity = {0, -9.81f, 0}) {
-    return make_reference<double>(
+    return make_exact_solver(
         body, {.integrator = integrator, .step = step, .gravity = gravity, .colliders = std::move(colliders)},
         0);
 }
@@ -151,7 +150,7 @@ TEST(Shapes, LeadOutByTheShortestWay) {
             // A field is exact to about half its spacing, and knows no corners.
             if (sampled && before < -0.004) continue;
             const double near = sampled ? 0.0012 : 2e-6;
-            auto solver = make_reference<double>(
+            auto solver = make_exact_solver(
                 particle(at), {.step = 1e-6, .gravity = vec3(0), .colliders = {shape.collider}}, 0);
             State state = solver->state();
             state.velocities[0] = dvec3(any(random), any(random), any(random));
@@ -188,7 +187,7 @@ TEST(Shapes, MoveAsTheyAreTold) {
             const vec3 local = 0.07f * vec3(any(random), any(random), any(random));
             if (shape.distance(dvec3(local)) > 0.0099) continue;
             const vec3 at = motion.position + motion.rotation * local;
-            auto solver = make_reference<double>(
+            auto solver = make_exact_solver(
                 particle(at), {.step = 1e-6, .gravity = vec3(0), .colliders = {shape.collider}}, 0);
             solver->step(1e-6, {.colliders = {&motion, 1}});
             const dvec3 back = glm::transpose(dmat3(motion.rotation)) *
@@ -256,9 +255,13 @@ TEST(Polygons, HaveNoSeam) {
         for (auto& triangle : polygon.triangles)
             for (vec3& p : triangle) p = turn * p;
         const float along = 0.09f * any(random);
-        auto solver = make_reference<float>(
-            particle(turn * vec3(0.02f, along, along)),  // before the diagonal of the square
-            {.step = 2e-3, .gravity = vec3(0), .colliders = {Collider{polygon}}}, 0);
+        auto solver =
+            make_solver(particle(turn * vec3(0.02f, along, along)),  // before the diagonal of the square
+                        {.backend = Backend::reference,
+                         .step = 2e-3,
+                         .force = true,
+                         .gravity = vec3(0),
+                         .colliders = {Collider{polygon}}});
         State state = solver->state();
         state.velocities[0] = dvec3(turn * vec3(-2, 0, 0));
         solver->restore(state);
@@ -283,7 +286,7 @@ TEST(Polygons, SweepWhatTheyMeet) {
 TEST(Wind, DrivesAPlateAsItsLawSays) {
     const float density = 0.3f, air = 1.2f, wind = 6;
     const Body body = cloth({5, 4}, 0.05f, {.density = density});
-    auto solver = make_reference<double>(body, {.step = 1e-4, .gravity = vec3(0), .air = air}, 0);
+    auto solver = make_exact_solver(body, {.step = 1e-4, .gravity = vec3(0), .air = air}, 0);
     solver->step(0.5, {.wind = {3, 0, wind}});  // what blows along the cloth does nothing
     // σ v' = ρ/2 (w - v)²  →  w - v = w / (1 + w ρ t / 2σ)
     const double left = wind / (1 + wind * double(air) * 0.5 / (2 * double(density)));
@@ -296,7 +299,7 @@ TEST(Wind, DrivesAPlateAsItsLawSays) {
 // A solid feels it on the side it comes from only: half its density × speed² × the area that it sees.
 TEST(Wind, PressesOnTheWindwardSideOfASolid) {
     const Body body = lattice({6, 6, 6}, 0.01f, {.youngs_modulus = 1e5f, .density = 1000});
-    auto solver = make_reference<double>(body, {.step = 1e-5, .gravity = vec3(0), .air = 1.2f}, 0);
+    auto solver = make_exact_solver(body, {.step = 1e-5, .gravity = vec3(0), .air = 1.2f}, 0);
     solver->step(2e-5, {.wind = {10, 0, 0}});
     dvec3 momentum(0);
     const State state = solver->state();

@@ -1,10 +1,9 @@
 // The backend cpu against the reference: the same physics, with many nodes at once and on many threads.
-#include "palpate/solver/cpu/cpu.h"
-
 #include "palpate/base/team.h"
 #include "palpate/body/select.h"
 #include "palpate/solver/cpu/laid_body.h"
 #include "palpate/solver/cpu/layout.h"
+#include "palpate/solver/machine.h"
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 #include "tests/body/turn.h"

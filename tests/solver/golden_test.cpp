@@ -2,7 +2,7 @@
 // of where each combination ends. PALPATE_GOLDEN=write writes the file anew, where a change is meant to round
 // differently.
 #include "palpate/base/files.h"
-#include "palpate/solver/cpu/cpu.h"
+#include "palpate/solver/machine.h"
 #include "tests/integrators.h"
 #include "tests/solver/agreement.h"
 

@@ -1,9 +1,7 @@
 // The backends of the GPU against the reference: the same physics, on whatever driver this machine has.
-#include "palpate/solver/gpu/gpu.h"
-
 #include "bench/studies.h"
 #include "palpate/body/cloth.h"
-#include "palpate/solver/reference/reference.h"
+#include "palpate/solver/machine.h"
 #include "palpate/solver/stability.h"
 #include "tests/gl/hostile.h"
 #include "tests/gl/with_context.h"
@@ -119,7 +117,7 @@ TEST_P(EveryWay, HasItsOrder) {
         solver.step(seconds);
         return solver.state().positions;
     };
-    auto exact = make_reference<double>(chain, {.integrator = Integrator::rk4, .step = seconds / 4000}, 0);
+    auto exact = make_exact_solver(chain, {.integrator = Integrator::rk4, .step = seconds / 4000}, 0);
     const auto truth = swung(*exact);
     auto error = [&](int steps) {
         auto solver = make_solver(
@@ -161,23 +159,19 @@ TEST_P(EveryWay, SavedAndRestoredToTheBit) {
 
 TEST_P(EveryWay, UndoesACall) {
     const Body body = lattice({5, 6, 7}, 0.01f, tissue);
-    for (bool late : {false, true}) {
-        auto solver = make_solver(
-            body,
-            {.backend = backend(), .integrator = integrator(), .late = late, .step = 1e-4, .force = true},
-            context());
-        solver->step(3e-4);
-        const State before = solver->save();
-        const GpuNodes nodes = solver->gpu_nodes();
-        solver->step(5e-4, {.wind = vec3(1)});
-        EXPECT_FALSE(solver->save().positions == before.positions);
-        solver->undo();
-        EXPECT_TRUE(solver->save().positions == before.positions);
-        EXPECT_TRUE(solver->save().velocities == before.velocities);
-        EXPECT_EQ(solver->save().lag, before.lag);
-        EXPECT_EQ(solver->gpu_nodes().positions, nodes.positions);
-        EXPECT_LE(glm::distance(solver->nodes().positions[11], vec3(before.positions[11])), 1e-7f);
-    }
+    auto solver = make_solver(
+        body, {.backend = backend(), .integrator = integrator(), .step = 1e-4, .force = true}, context());
+    solver->step(3e-4);
+    const State before = solver->save();
+    const GpuNodes nodes = solver->gpu_nodes();
+    solver->step(5e-4, {.wind = vec3(1)});
+    EXPECT_FALSE(solver->save().positions == before.positions);
+    solver->undo();
+    EXPECT_TRUE(solver->save().positions == before.positions);
+    EXPECT_TRUE(solver->save().velocities == before.velocities);
+    EXPECT_EQ(solver->save().lag, before.lag);
+    EXPECT_EQ(solver->gpu_nodes().positions, nodes.positions);
+    EXPECT_LE(glm::distance(solver->nodes().positions[11], vec3(before.positions[11])), 1e-7f);
 }
 
 // ---- what a GPU has of its own ----
@@ -255,45 +249,6 @@ TEST_P(EveryGpu, TakesAStateThatIsTorn) {
     EXPECT_TRUE(solver->save().positions == before.positions);
 }
 
-// Told of a call late, it goes back to before that call, over the one since.
-TEST_P(EveryGpu, FindsLateThatACallToreIt) {
-    const Body body = lattice({9, 5, 7}, 0.01f, tissue);
-    auto solver =
-        make_solver(body, {.backend = GetParam(), .late = true, .step = 1e-4, .force = true}, context());
-    solver->step(3e-4);
-    solver->restore(wild(*solver));
-    const State before = solver->save();
-    Stats stats = solver->step(5e-3);
-    EXPECT_TRUE(stats.late && !stats.diverged && stats.steps == 50);
-    stats = solver->step(5e-3);
-    EXPECT_TRUE(stats.late && stats.diverged);
-    EXPECT_TRUE(solver->save().positions == before.positions);
-    EXPECT_TRUE(solver->save().velocities == before.velocities);
-}
-
-TEST_P(EveryGpu, TellsLateWhatItTellsAtOnce) {
-    const Body body = lattice({6, 5, 4}, 0.01f, tissue);
-    const Acting on = everything(body);
-    Simulation how = simulation(body, on, Integrator::verlet, GetParam());
-    auto prompt = make_solver(body, how, context());
-    how.late = true;
-    auto late = make_solver(body, how, context());
-    Stats before{};
-    for (int call = 0; call < 5; ++call) {
-        const Stats now = prompt->step(4 * how.step, on.influences()),
-                    told = late->step(4 * how.step, on.influences());
-        EXPECT_FALSE(now.late);
-        EXPECT_TRUE(told.late);
-        EXPECT_EQ(told.steps, now.steps);
-        EXPECT_EQ(told.largest_speed, before.largest_speed);
-        EXPECT_EQ(told.largest_move, before.largest_move);
-        EXPECT_TRUE(told.reactions == before.reactions && told.pulls == before.pulls);
-        before = now;
-    }
-    EXPECT_TRUE(late->save().positions == prompt->save().positions);
-    EXPECT_GT(before.largest_speed, 0);
-}
-
 TEST_P(EveryGpu, ReadsNothingBackToStep) {
     const Body body = lattice({6, 5, 4}, 0.01f, tissue);
     const Acting on = everything(body);
@@ -327,8 +282,10 @@ TEST_F(Gpu, ComputesInTilesAndWithout) {
             SCOPED_TRACE(name + (tiles ? ", in tiles" : ""));
             const Acting on = everything(body);
             const Simulation how = simulation(body, on, Integrator::verlet, Backend::compute);
-            const auto solver = make_gpu(body, how, highest_frequency(body), context(), tiles);
-            expect_same(*solver, body, on, how, 25, 1e-6);
+            Solver solver(body, how, highest_frequency(body), [&](const Body& b, const Simulation& s) {
+                return make_gpu(b, s, context(), tiles);
+            });
+            expect_same(solver, body, on, how, 25, 1e-6);
         }
 }
 

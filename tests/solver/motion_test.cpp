@@ -2,7 +2,6 @@
 #include "palpate/base/error.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/solver/reference/reference.h"
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 #include "tests/forces.h"
@@ -65,7 +64,7 @@ TEST_P(Motion, OneSpringHasItsPeriod) {
         const Body body = pair(k, m, c, stretch);
         // Stretch x of the pair: m x'' = -2 k x - m c x'.
         const double w = std::sqrt(2.0 * k / m - c * c / 4.0);
-        auto solver = make_reference<double>(body, weightless(1.0 / 4096), 0);
+        auto solver = make_exact_solver(body, weightless(1.0 / 4096), 0);
         double worst = 0;
         for (int i = 1; i <= 200; ++i) {
             solver->step(1.0 / 64);
@@ -82,7 +81,7 @@ TEST_P(Motion, OneSpringHasItsPeriod) {
 
 TEST_P(Motion, FreeFall) {
     const Body body = lattice({3, 4, 2}, 0.01f, undamped);
-    auto solver = make_reference<double>(body, simulation(1.0 / 1024), 0);
+    auto solver = make_exact_solver(body, simulation(1.0 / 1024), 0);
     solver->step(0.5);
     const State s = solver->state();
     const double dt = 1.0 / 1024, g = 9.81f, t = 0.5;
@@ -212,7 +211,7 @@ TEST_P(Motion, ATipPressesAsHardAsItsStiffnessSays) {
     const Press press{{0.04f, 0.02f + radius - depth, 0.04f}, vec3(0), radius, 1e7f};
     const double pressure = 1e7 / (3.14159265 * 25);  // Pa/m
     EXPECT_NEAR(pressure_per_metre(press) / pressure, 1, 1e-6);
-    auto solver = make_reference<double>(body, weightless(1e-6), 0);
+    auto solver = make_exact_solver(body, weightless(1e-6), 0);
     const Stats stats = solver->step(1e-6, {.presses = {&press, 1}});
     double expected = 0;
     for (std::size_t i = 0; i < body.count(); ++i) {
@@ -318,7 +317,7 @@ TEST(Verlet, KeepsItsOrderWhenTheStepChanges) {
         Simulation s;
         s.gravity = vec3(0);
         s.step = 1;
-        auto solver = make_reference<double>(body, s, 0);
+        auto solver = make_exact_solver(body, s, 0);
         double t = 0;
         for (int i = 0; i < n; ++i) {
             const double dt = (i % 3 + 1) * 0.25 / (2 * n);  // steps of three lengths, by turns

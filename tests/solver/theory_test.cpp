@@ -5,7 +5,6 @@
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/solver/reference/reference.h"
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 
@@ -226,8 +225,7 @@ TEST(Net, TheSameSpringsInATableMoveAlike) {
     Body written = net(grid.positions, masses, ties);
     written.damping = grid.damping;
     for (Body* body : {&grid, &written}) pin(*body, std::vector<int>{0, 5});
-    auto a = make_reference<double>(grid, {.step = 1e-4}, 0),
-         b = make_reference<double>(written, {.step = 1e-4}, 0);
+    auto a = make_exact_solver(grid, {.step = 1e-4}, 0), b = make_exact_solver(written, {.step = 1e-4}, 0);
     ASSERT_FALSE(a->step(0.2).diverged);
     ASSERT_FALSE(b->step(0.2).diverged);
     const State one = a->state(), other = b->state();
@@ -283,12 +281,12 @@ TEST(State, SavedAndRestoredExactly) {
 // A change of the integrator in mid flight keeps the motion: state() of one is a start for another.
 TEST(State, CarriesOverToAnotherIntegrator) {
     const Body body = lattice({4, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
-    auto verlet = make_reference<double>(body, {.step = 1e-5}, 0);
+    auto verlet = make_exact_solver(body, {.step = 1e-5}, 0);
     State thrown = verlet->state();
     for (std::size_t i = 0; i < thrown.velocities.size(); ++i)
         thrown.velocities[i] = {1 + 5 * thrown.positions[i].y, 2, 0};
     verlet->restore(thrown);
-    auto rk4 = make_reference<double>(body, {.integrator = Integrator::rk4, .step = 1e-5}, 0);
+    auto rk4 = make_exact_solver(body, {.integrator = Integrator::rk4, .step = 1e-5}, 0);
     verlet->step(0.01);
     rk4->restore(verlet->state());
     verlet->step(0.01);
@@ -304,9 +302,9 @@ TEST(State, CarriesOverToAnotherIntegrator) {
 TEST(State, VerletsOwnStateStartsAnyOther) {
     const Body particle = net(std::vector<vec3>{{0, 0, 0}}, std::vector<float>{1}, {});
     for (const auto& [integrator, name] : names(Integrator{})) {
-        auto verlet = make_reference<double>(particle, {.step = 0.01, .gravity = {0, -10, 0}}, 0);
-        auto other = make_reference<double>(
-            particle, {.integrator = integrator, .step = 0.01, .gravity = {0, -10, 0}}, 0);
+        auto verlet = make_exact_solver(particle, {.step = 0.01, .gravity = {0, -10, 0}}, 0);
+        auto other =
+            make_exact_solver(particle, {.integrator = integrator, .step = 0.01, .gravity = {0, -10, 0}}, 0);
         verlet->step(0.1);
         other->restore(verlet->save());
         EXPECT_LE(std::abs(other->state().velocities[0].y + 1), 1e-6) << name;

@@ -11,14 +11,14 @@
 namespace palpate::gpu {
 
 // As in closing.comp.
-struct Answers::Findings {
+struct Answers::Found {
     unsigned torn = 0, speed = 0, move = 0;
     std::array<int, 3> low, high;
 };
 
 namespace {
 
-constexpr int letters = 3;  // two calls on their way, and one that was dropped
+constexpr std::size_t before_impulses = 64;  // bytes of a letter
 constexpr std::size_t most_tools = std::size(Pass{}.tip) + std::size(Pass{}.drag);
 
 // The float whose bits closing.comp put in order.
@@ -29,23 +29,20 @@ float from_order(int ordered) { return std::bit_cast<float>(ordered ^ (ordered >
 Answers::Answers(const gl::Context& context, int adders)
     : context_(context),
       adders_(adders),
-      findings_(gl::Buffer::room(sizeof(Findings))),
-      impulses_(gl::Buffer::room(most_tools * std::size_t(adders) * sizeof(vec4))),
-      letter_bytes_(64 + most_tools * std::size_t(adders) * sizeof(vec4)) {
+      findings_(gl::Buffer::room(sizeof(Found))),
+      impulses_(gl::Buffer::room(most_tools * std::size_t(adders) * sizeof(vec4))) {
     constexpr GLbitfield how = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    const auto bytes = GLsizeiptr(letters * letter_bytes_);
-    glNamedBufferStorage(letters_.name(), bytes, nullptr, how | GL_CLIENT_STORAGE_BIT);
-    seen_ = static_cast<const std::byte*>(glMapNamedBufferRange(letters_.name(), 0, bytes, how));
+    const auto bytes = GLsizeiptr(before_impulses + most_tools * std::size_t(adders) * sizeof(vec4));
+    glNamedBufferStorage(letter_.name(), bytes, nullptr, how | GL_CLIENT_STORAGE_BIT);
+    seen_ = static_cast<const std::byte*>(glMapNamedBufferRange(letter_.name(), 0, bytes, how));
     if (!seen_)
         throw Error("no memory that both the host and the graphics card see", "OpenGL",
                     "use the backend cpu");
     reset_findings();
 }
 
-Answers::~Answers() { drop_all(); }
-
 void Answers::reset_findings() const {
-    Findings none;
+    Found none;
     none.low.fill(std::numeric_limits<int>::max());
     none.high.fill(std::numeric_limits<int>::min());
     glNamedBufferSubData(findings_.name(), 0, sizeof none, &none);
@@ -62,63 +59,47 @@ void Answers::clear_impulses() const {
 
 void Answers::bind_impulses() const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, impulses_.name()); }
 
-void Answers::ask(const Stats& stats, const Influences& influences) {
-    const Asked asked{stats, influences.presses.size(), influences.drags.size(), next_letter_, nullptr};
-    next_letter_ = (next_letter_ + 1) % letters;
-    const auto at = GLintptr(std::size_t(asked.letter) * letter_bytes_);
-    glCopyNamedBufferSubData(findings_.name(), letters_.name(), 0, at, sizeof(Findings));
-    const std::size_t sums = (asked.tips + asked.drags) * std::size_t(adders_);
-    if (sums > 0)
-        glCopyNamedBufferSubData(impulses_.name(), letters_.name(), 0, at + 64,
-                                 GLsizeiptr(sums * sizeof(vec4)));
+void Answers::wait_for_gpu() const {
     glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-    asked_.push_back(asked);
-    asked_.back().done = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    glFlush();
+    const GLsync done = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    constexpr GLuint64 a_second = 1'000'000'000;
+    GLenum state;
+    while ((state = glClientWaitSync(done, GL_SYNC_FLUSH_COMMANDS_BIT, a_second)) == GL_TIMEOUT_EXPIRED)
+        context_.make_current();  // finds out whether the card is lost
+    if (state == GL_WAIT_FAILED) context_.make_current();
+    glDeleteSync(done);
 }
 
-Answer Answers::oldest() {
-    Asked asked = asked_.front();
-    constexpr GLuint64 a_second = 1'000'000'000;
-    GLenum done;
-    while ((done = glClientWaitSync(asked.done, GL_SYNC_FLUSH_COMMANDS_BIT, a_second)) == GL_TIMEOUT_EXPIRED)
-        context_.make_current();  // finds out whether the card is lost
-    if (done == GL_WAIT_FAILED) context_.make_current();
-    glDeleteSync(asked.done);
-    asked_.pop_front();
+Answer Answers::wait(const Influences& influences) {
+    const std::size_t tips = influences.presses.size(), tools = tips + influences.drags.size();
+    glCopyNamedBufferSubData(findings_.name(), letter_.name(), 0, 0, sizeof(Found));
+    if (tools > 0)
+        glCopyNamedBufferSubData(impulses_.name(), letter_.name(), 0, before_impulses,
+                                 GLsizeiptr(tools * std::size_t(adders_) * sizeof(vec4)));
+    wait_for_gpu();
 
-    const std::byte* letter = seen_ + std::size_t(asked.letter) * letter_bytes_;
-    Findings found;
-    std::memcpy(&found, letter, sizeof found);
-    Answer answer{asked.stats, {}};
-    answer.stats.diverged = found.torn > 0;
-    answer.stats.largest_speed = std::bit_cast<float>(found.speed);
-    answer.stats.largest_move = std::bit_cast<float>(found.move);
+    Found found;
+    std::memcpy(&found, seen_, sizeof found);
+    Answer answer;
+    answer.findings.torn = found.torn > 0;
+    answer.findings.largest_speed = std::bit_cast<float>(found.speed);
+    answer.findings.largest_move = std::bit_cast<float>(found.move);
     if (found.low[0] <= found.high[0])
         for (int k = 0; k < 3; ++k) {
             answer.bounds.low[k] = from_order(found.low[std::size_t(k)]);
             answer.bounds.high[k] = from_order(found.high[std::size_t(k)]);
         }
-    for (std::size_t t = 0; t < asked.tips + asked.drags; ++t) {
+    const std::byte* next = seen_ + before_impulses;
+    for (std::size_t t = 0; t < tools; ++t) {
         dvec3 sum(0);
-        for (int i = 0; i < adders_; ++i) {
+        for (int i = 0; i < adders_; ++i, next += sizeof(vec4)) {
             vec4 part;
-            std::memcpy(&part, letter + 64 + (t * std::size_t(adders_) + std::size_t(i)) * sizeof part,
-                        sizeof part);
+            std::memcpy(&part, next, sizeof part);
             sum += dvec3(part);
         }
-        (t < asked.tips ? answer.stats.reactions[t] : answer.stats.pulls[t - asked.tips]) = -sum;
+        (t < tips ? answer.findings.by_presses : answer.findings.by_drags).push_back(sum);
     }
     return answer;
-}
-
-void Answers::drop_newest() {
-    glDeleteSync(asked_.back().done);
-    asked_.pop_back();
-}
-
-void Answers::drop_all() {
-    while (!asked_.empty()) drop_newest();
 }
 
 }  // namespace palpate::gpu

@@ -1,17 +1,13 @@
-#include "palpate/solver/gpu/gpu.h"
-
 #include "palpate/gl/context.h"
 #include "palpate/gl/program.h"
 #include "palpate/gl/visit.h"
-#include "palpate/solver/check.h"
 #include "palpate/solver/gpu/answers.h"
 #include "palpate/solver/gpu/pipeline.h"
 #include "palpate/solver/gpu/placement.h"
 #include "palpate/solver/gpu/world.h"
-#include "palpate/solver/schedule.h"
+#include "palpate/solver/machine.h"
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 
 namespace palpate {
@@ -55,15 +51,13 @@ const gl::Context& current_one(std::optional<gl::Context>& own, const gl::Contex
     return context;
 }
 
-class Gpu final : public Solver {
+class Gpu final : public Machine {
  public:
-    Gpu(const Body& body, const Simulation& simulation, double frequency, const gl::Context* context,
-        std::optional<bool> tiles)
+    Gpu(const Body& body, const Simulation& simulation, const gl::Context* context, std::optional<bool> tiles)
         : context_(current_one(own_, context)),
           body_(body),
           simulation_(simulation),
           scheme_(scheme(simulation.integrator)),
-          frequency_(frequency),
           placement_(body_),
           width_(simulation.backend == Backend::fragment ? row : 0),
           world_(body_, simulation_, placement_),
@@ -80,89 +74,36 @@ class Gpu final : public Solver {
                 states_[where].emplace(make_state());
         if (simulation.contact > 0 || simulation.pull > 0) touched();  // before it has to be quick
         if (adds_up()) next_sum_.emplace(make_state());
-        for (int i = 0; i < (simulation_.late ? 2 : 1); ++i) pasts_.push_back({make_state(), 0, {}, {}});
-        restore({std::vector<dvec3>(body_.positions.begin(), body_.positions.end()),
-                 std::vector<dvec3>(body_.count(), dvec3(0)), 0});
+        before_.emplace(make_state());
+        put({std::vector<dvec3>(body_.positions.begin(), body_.positions.end()),
+             std::vector<dvec3>(body_.count(), dvec3(0)), 0});
     }
 
     ~Gpu() override { context_.make_current_or_not(); }
 
-    Stats step(double seconds, const Influences& influences) override {
-        check(seconds, influences, body_, simulation_);
+    Findings run(const Call& call) override {
         context_.make_current();
         const gl::Visit visit;
-        Stats stats = about_to_do(influences, seconds, longest_.under(influences));
-        remember();
-        world_.guide(influences.moves, seconds);
+        const Influences& influences = call.influences;
+        world_.lead(call.guides);
         const Touched* tools = influences.presses.empty() && influences.drags.empty() ? nullptr : &touched();
         Pipeline& pipeline = tools ? *tools->pipeline : *alone_;
         if (tools) answers_.clear_impulses();
         world_.bind();
-        Pass constant = quiet_;
-        constant.wind = vec4(influences.wind, simulation_.air);
+        Call placed = call;
         for (std::size_t d = 0; d < influences.drags.size(); ++d)
-            constant.dragged[d / 4][int(d % 4)] = placement_.slot[std::size_t(influences.drags[d].node)];
-        const Call call{scheme_, simulation_, influences, body_.damping, stats.step, stats.steps, lag_};
-        call.for_each_pass(constant, [&](const Pass& pass, const Turn& turn) {
+            placed.constant.dragged[d / 4][int(d % 4)] =
+                placement_.slot[std::size_t(influences.drags[d].node)];
+        placed.for_each_pass([&](const Pass& pass, const Turn& turn) {
             world_.upload(pass);
             look_at(*states_[turn.at]);
             if (tools && turn.impulse > 0) add_impulses(*tools, turn.impulse);
             run(pipeline, turn);
         });
-        lag_ = call.lag_after();
-        world_.arrive(influences.moves);
-        close();
-        answers_.ask(stats, influences);
-        return simulation_.late ? settle_all_but_one(stats) : settle();
+        return close(influences);
     }
 
-    void undo() override {
-        if (history_ < 1) refuse_undo(body_);
-        context_.make_current();
-        const gl::Visit visit;
-        if (answers_.pending() > 0) answers_.drop_newest();
-        go_back(1);
-    }
-
-    double frequency() const override { return frequency_; }
-
-    double longest_step(const Influences& influences) const override { return longest_.under(influences); }
-
-    Nodes nodes() const override {
-        if (!published_) publish();
-        return {positions_, normals_};
-    }
-
-    GpuNodes gpu_nodes() const override {
-        return {shown_positions_.name(), shown_normals_.name(), 0, body_.count(), bounds_};
-    }
-
-    State state() const override {
-        State state = save();
-        if (lag_ > 0) {
-            state.lag = 0;
-            const std::vector<vec4> velocities = velocities_now();
-            for (std::size_t i = 0; i < body_.count(); ++i)
-                state.velocities[i] = dvec3(velocities[std::size_t(placement_.slot[i])]);
-        }
-        return state;
-    }
-
-    State save() const override {
-        context_.make_current();
-        const std::vector<vec4> positions = read(states_[current]->positions),
-                                velocities = read(states_[current]->velocities);
-        State state;
-        for (int slot : placement_.slot) {
-            state.positions.push_back(dvec3(positions[std::size_t(slot)]));
-            state.velocities.push_back(dvec3(velocities[std::size_t(slot)]));
-        }
-        state.lag = lag_;
-        return state;
-    }
-
-    void restore(const State& state) override {
-        check(state, body_);
+    void put(const State& state) override {
         context_.make_current();
         const gl::Visit visit;
         std::vector<vec4> positions(std::size_t(placement_.slots), vec4(0, 0, 0, -1)), velocities(positions);
@@ -171,25 +112,72 @@ class Gpu final : public Solver {
             positions[slot] = vec4(vec3(state.positions[i]), body_.inverse_mass[i]);
             velocities[slot] = vec4(vec3(state.velocities[i]), float(world_.guide_of(i)));
         }
-        world_.stand(state);
         for (auto& one :
              states_) {  // all of them, because what lies between the nodes has to be there in each
             if (!one) continue;
             one->positions.put(std::as_bytes(std::span(positions)));
             one->velocities.put(std::as_bytes(std::span(velocities)));
         }
-        lag_ = state.lag;
-        if (lag_ > 0 && !scheme_.staggered) {  // a staggered scheme's state: this one wants velocities of now
-            velocities = velocities_now();
-            states_[current]->velocities.put(std::as_bytes(std::span(velocities)));
-            lag_ = 0;
-        }
-        answers_.drop_all();
-        history_ = 0;
         world_.bind();
-        close();
-        answers_.ask({}, {});
-        bounds_ = answers_.oldest().bounds;
+        close({});
+    }
+
+    State get() const override {
+        context_.make_current();
+        const std::vector<vec4> positions = read(states_[current]->positions),
+                                velocities = read(states_[current]->velocities);
+        State state;
+        for (int slot : placement_.slot) {
+            state.positions.push_back(dvec3(positions[std::size_t(slot)]));
+            state.velocities.push_back(dvec3(velocities[std::size_t(slot)]));
+        }
+        return state;
+    }
+
+    void remember() override {
+        context_.make_current();
+        before_->positions.copy(states_[current]->positions);
+        before_->velocities.copy(states_[current]->velocities);
+    }
+
+    void bring_back() override {
+        context_.make_current();
+        const gl::Visit visit;
+        states_[current]->positions.copy(before_->positions);
+        states_[current]->velocities.copy(before_->velocities);
+        world_.bind();
+        close({});
+    }
+
+    std::vector<dvec3> kicked(double kick) const override {
+        context_.make_current();
+        const gl::Visit visit;
+        Pass pass = quiet_;
+        pass.kick = float(kick);
+        world_.bind();
+        world_.upload(pass);
+        const Moving &at = *states_[current],
+                     &free = *states_[scheme_.stages.size() == 1 ? between : further];
+        look_at(at);
+        alone_->pass({at, at, at.positions, at, free, adds_up() ? *next_sum_ : free});
+        const std::vector<vec4> by_slots = read(free.velocities);
+        std::vector<dvec3> velocities;
+        for (int slot : placement_.slot) velocities.emplace_back(by_slots[std::size_t(slot)]);
+        return velocities;
+    }
+
+    void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
+        context_.make_current();
+        std::vector<vec4> values(body_.count());
+        for (auto [buffer, to] :
+             {std::pair(&shown_positions_, &positions), std::pair(&shown_normals_, &normals)}) {
+            context_.read(buffer->name(), std::as_writable_bytes(std::span(values)));
+            to->assign(values.begin(), values.end());
+        }
+    }
+
+    GpuNodes gpu_nodes() const override {
+        return {shown_positions_.name(), shown_normals_.name(), 0, body_.count(), bounds_};
     }
 
     std::size_t memory() const override {
@@ -204,14 +192,6 @@ class Gpu final : public Solver {
     }
 
  private:
-    // What a call began with.
-    struct Past {
-        Moving state;
-        double lag;
-        std::vector<vec3> guided;
-        Bounds bounds;  // as known then
-    };
-
     // What is needed where tools act.
     struct Touched {
         std::unique_ptr<Pipeline> pipeline;
@@ -273,7 +253,7 @@ class Gpu final : public Solver {
 
     // ---- after a call ----
 
-    void close() {
+    Findings close(const Influences& influences) {
         look_at(*states_[current]);
         before_last_step().bind(9);
         world_.upload(quiet_);
@@ -286,54 +266,9 @@ class Gpu final : public Solver {
         if (each > 0) glDispatchCompute(GLuint(groups(each)), 1, 1);
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                         GL_BUFFER_UPDATE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
-        published_ = false;
-    }
-
-    Stats settle() {
-        Answer answer = answers_.oldest();
+        const Answer answer = answers_.wait(influences);
         bounds_ = answer.bounds;
-        if (!answer.stats.diverged) return answer.stats;
-        const int calls = answers_.pending() + 1;
-        answers_.drop_all();
-        go_back(calls);
-        return undone(answer.stats);
-    }
-
-    // The stats of the call before; of this one what is known already.
-    Stats settle_all_but_one(const Stats& known) {
-        Stats stats;
-        if (answers_.pending() > 1) stats = settle();
-        stats.steps = known.steps;
-        stats.step = known.step;
-        stats.late = true;
-        return stats;
-    }
-
-    // ---- the past ----
-
-    void remember() {
-        std::rotate(pasts_.begin(), pasts_.end() - 1, pasts_.end());
-        Past& past = pasts_.front();
-        past.state.positions.copy(states_[current]->positions);
-        past.state.velocities.copy(states_[current]->velocities);
-        past.lag = lag_;
-        past.guided = world_.guided();
-        past.bounds = bounds_;
-        history_ = std::min(history_ + 1, int(pasts_.size()));
-    }
-
-    void go_back(int calls) {
-        assert(calls <= history_);
-        const Past& past = pasts_[std::size_t(calls - 1)];
-        states_[current]->positions.copy(past.state.positions);
-        states_[current]->velocities.copy(past.state.velocities);
-        lag_ = past.lag;
-        world_.stand(past.guided);
-        bounds_ = past.bounds;
-        std::rotate(pasts_.begin(), pasts_.begin() + calls, pasts_.end());
-        history_ -= calls;
-        world_.bind();
-        close();
+        return answer.findings;
     }
 
     // ---- for the host ----
@@ -344,39 +279,11 @@ class Gpu final : public Solver {
         return values;
     }
 
-    // Velocities by slots at the time of the positions: half a kick brings them up.
-    std::vector<vec4> velocities_now() const {
-        context_.make_current();
-        const gl::Visit visit;
-        Pass pass = quiet_;
-        pass.kick = float(lag_ / (1 + body_.damping * lag_));
-        world_.bind();
-        world_.upload(pass);
-        const Moving &at = *states_[current],
-                     &free = *states_[scheme_.stages.size() == 1 ? between : further];
-        look_at(at);
-        alone_->pass({at, at, at.positions, at, free, adds_up() ? *next_sum_ : free});
-        return read(free.velocities);
-    }
-
-    void publish() const {
-        context_.make_current();
-        std::vector<vec4> values(body_.count());
-        for (auto [buffer, to] :
-             {std::pair(&shown_positions_, &positions_), std::pair(&shown_normals_, &normals_)}) {
-            context_.read(buffer->name(), std::as_writable_bytes(std::span(values)));
-            to->assign(values.begin(), values.end());
-        }
-        published_ = true;
-    }
-
     std::optional<gl::Context> own_;  // first, because all the rest lives in it
     const gl::Context& context_;
-    const Body body_;
-    const Simulation simulation_;
+    const Body& body_;
+    const Simulation& simulation_;
     const Scheme& scheme_;
-    const double frequency_;  // rad/s, the highest of the body with nothing touching it
-    mutable LongestStep longest_{body_, simulation_, frequency_};
     const Placement placement_;
     const int width_;  // of flat textures; 0: buffers
     World world_;
@@ -386,29 +293,23 @@ class Gpu final : public Solver {
     std::optional<Touched> touched_;
     const Pass quiet_;                 // nothing touches or moves it
     std::optional<Moving> states_[4];  // Where
-    std::optional<Moving> next_sum_;
-    std::vector<Past> pasts_;                     // the newest first
-    int history_ = 0;                             // how many of them are true
+    std::optional<Moving> next_sum_, before_;
     gl::Buffer shown_positions_, shown_normals_;  // of the nodes in their order
     int adders_;                                  // invocations that add up impulses
     Answers answers_;
-    double lag_ = 0;  // s, how far the velocities are behind the positions
     Bounds bounds_;
-    mutable std::vector<vec3> positions_, normals_;  // what nodes() shows
-    mutable bool published_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<Solver> make_gpu(const Body& body, const Simulation& simulation, double frequency,
-                                 const gl::Context* context, std::optional<bool> tiles) {
-    check(body, simulation);
+std::unique_ptr<Machine> make_gpu(const Body& body, const Simulation& simulation, const gl::Context* context,
+                                  std::optional<bool> tiles) {
     std::optional<gl::Visit> visit;  // in a context of its own nobody else is
     if (context) {
         context->make_current();
         visit.emplace();
     }
-    return std::make_unique<Gpu>(body, simulation, frequency, context, tiles);
+    return std::make_unique<Gpu>(body, simulation, context, tiles);
 }
 
 }  // namespace palpate

@@ -175,8 +175,7 @@ World::World(const Body& body, const Simulation& simulation, const Placement& pl
       distances_(field(GL_R32F, all_distances(simulation))),
       grids_(field(GL_RGBA32F, grids_of(simulation))),
       guide_(number_guides(body)),
-      guided_(count_guides(body)),
-      guides_(GL_RGBA32F, sizeof(vec4), 2 * guided_.size(), 0),
+      guides_(GL_RGBA32F, sizeof(vec4), 2 * count_guides(body), 0),
       uniforms_(gl::Buffer::room(sizeof(Pass))) {}
 
 void World::bind() const {
@@ -199,30 +198,13 @@ void World::upload(const Pass& pass) const {
     pass_ = pass;
 }
 
-template <class Do>
-void World::for_each_guided(std::span<const Move> moves, Do act) const {
-    for (const Move& move : moves)
-        for (std::size_t k = 0; k < move.nodes.size(); ++k)
-            if (const int guide = guide_[std::size_t(move.nodes[k])]; guide >= 0)
-                act(std::size_t(guide), move.to[k]);
-}
-
-void World::guide(std::span<const Move> moves, double seconds) {
-    std::vector<vec4> guides(2 * guided_.size(), vec4(0));
-    for_each_guided(moves, [&](std::size_t guide, vec3 to) {
-        guides[2 * guide] = vec4((to - guided_[guide]) / float(seconds), 0);
-        guides[2 * guide + 1] = vec4(to, 1);
-    });
-    guides_.put(std::as_bytes(std::span(guides)));
-}
-
-void World::arrive(std::span<const Move> moves) {
-    for_each_guided(moves, [&](std::size_t guide, vec3 to) { guided_[guide] = to; });
-}
-
-void World::stand(const State& state) {
-    for (std::size_t i = 0; i < guide_.size(); ++i)
-        if (guide_[i] >= 0) guided_[std::size_t(guide_[i])] = vec3(state.positions[i]);
+void World::lead(std::span<const Guide> guides) {
+    std::vector<vec4> values;
+    for (const Guide& guide : guides) {
+        values.emplace_back(vec3(guide.velocity), 0);
+        values.emplace_back(vec3(guide.to), guide.is_led ? 1 : 0);
+    }
+    guides_.put(std::as_bytes(std::span(values)));
 }
 
 std::size_t World::bytes() const {

@@ -2,6 +2,7 @@
 #include "palpate/gl/field.h"
 #include "palpate/solver/gpu/pipeline.h"
 #include "palpate/solver/gpu/placement.h"
+#include "palpate/solver/guides.h"
 #include "palpate/solver/pass.h"
 
 #include <optional>
@@ -33,25 +34,15 @@ class World {
 
     /// The number of a node's guide, or -1.
     int guide_of(std::size_t node) const { return guide_[node]; }
-    /// Sends them off: in `seconds` to where the moves say, or nowhere.
-    void guide(std::span<const Move> moves, double seconds);
-    /// They have got there.
-    void arrive(std::span<const Move> moves);
-    /// Where they are, m.
-    const std::vector<vec3>& guided() const { return guided_; }
-    void stand(const std::vector<vec3>& guided) { guided_ = guided; }
-    void stand(const State& state);
+    /// Sends them off.
+    void lead(std::span<const Guide> guides);
 
     std::size_t bytes() const;
 
  private:
-    template <class Do>
-    void for_each_guided(std::span<const Move> moves, Do act) const;
-
     gl::Field traits_, ties_, slots_, rim_;
     gl::Field corners_, distances_, grids_;
-    std::vector<int> guide_;    // of each node
-    std::vector<vec3> guided_;  // where each guide's node is
+    std::vector<int> guide_;  // of each node
     gl::Field guides_;
     gl::Buffer uniforms_;
     mutable std::optional<Pass> pass_;  // in it

@@ -1,8 +1,4 @@
-#include "palpate/solver/reference/reference.h"
-
-#include "palpate/solver/check.h"
-#include "palpate/solver/pass.h"
-#include "palpate/solver/schedule.h"
+#include "palpate/solver/machine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +7,8 @@ namespace palpate {
 namespace {
 
 // What all nodes look at while a pass runs.
-struct World {
+struct Surroundings {
     const Body& body;
-    Pass pass;  // what stays the same for all calls
     Table springs;
     std::vector<vec3> corners;                 // of polygons
     std::vector<const DistanceField*> fields;  // of closed meshes
@@ -21,7 +16,7 @@ struct World {
 };
 
 template <class Real>
-struct Moving {
+struct NodeStates {
     std::vector<glm::vec<3, Real>> positions, velocities;
 };
 
@@ -31,9 +26,9 @@ struct ReferenceNode {
     using Real = Number;
     using Real3 = glm::vec<3, Real>;
 
-    const World& world;
+    const Surroundings& world;
     const Pass& pass;
-    const Moving<Real>& now;
+    const NodeStates<Real>& now;
     int id;
     const Tie* ties;  // this node's springs
     Real outside_area, outside_cover;
@@ -73,170 +68,121 @@ struct ReferenceNode {
 };
 
 template <class Real>
-class Reference final : public Solver {
+class Reference final : public Machine {
     using At = ReferenceNode<Real>;
     using Node = typename At::Node;
     using Real3 = typename At::Real3;
 
  public:
-    Reference(const Body& body, const Simulation& simulation, double frequency)
+    Reference(const Body& body, const Simulation& simulation)
         : body_(body),
-          simulation_(simulation),
-          scheme_(scheme(simulation.integrator)),
-          frequency_(frequency),
-          world_{body_,
-                 make_pass(body, simulation_),
-                 table(body),
-                 polygon_corners(simulation_),
-                 distance_fields(simulation_),
-                 {}} {
+          world_{body_, table(body), polygon_corners(simulation), distance_fields(simulation), {}},
+          quiet_(make_pass(body, simulation)) {
         // Where there is no spring its end is the node itself, and it pulls at nothing.
         for (std::size_t t = 0; t < world_.springs.ties.size(); ++t)
             if (int& to = world_.springs.ties[t].to; to < 0) to = int(t) / world_.springs.width;
-        Moving<Real>& begin = states_[current];
+        NodeStates<Real>& begin = states_[current];
         for (vec3 p : body.positions) begin.positions.push_back(Real3(p));
         begin.velocities.assign(body.count(), Real3(0));
         for (Where where : {between, further, sum})
-            if (needs(scheme_, where)) states_[where] = begin;
-        publish();
+            if (needs(scheme(simulation.integrator), where)) states_[where] = begin;
     }
 
-    Stats step(double seconds, const Influences& influences) override {
-        check(seconds, influences, body_, simulation_);
-        Stats stats = about_to_do(influences, seconds, longest_.under(influences));
-        before_ = save();
-        knows_before_ = true;
+    Findings run(const Call& call) override {
+        Findings found{.by_presses = std::vector<dvec3>(call.influences.presses.size()),
+                       .by_drags = std::vector<dvec3>(call.influences.drags.size())};
         world_.dragged.clear();
-        for (const Drag& drag : influences.drags) world_.dragged.push_back(drag.node);
-        world_.pass.wind = vec4(influences.wind, simulation_.air);
-        send_off(influences.moves, seconds);
-        const Call call{scheme_, simulation_, influences, body_.damping, stats.step, stats.steps, lag_};
-        call.for_each_pass(world_.pass, [&](const Pass& pass, const Turn& turn) {
-            count_impulses(pass, turn, stats);
-            pass_over_nodes(pass, turn, stats);
+        for (const Drag& drag : call.influences.drags) world_.dragged.push_back(drag.node);
+        for (const Guide& guide : call.guides)
+            states_[current].velocities[std::size_t(guide.node)] = Real3(guide.velocity);
+        call.for_each_pass([&](const Pass& pass, const Turn& turn) {
+            count_impulses(pass, turn, found);
+            pass_over_nodes(pass, turn, found);
             if (pass.last && turn.next != current) std::swap(states_[current], states_[turn.next]);
         });
-        lag_ = call.lag_after();
-        if (torn()) {
-            undo();
-            return undone(stats);
-        }
-        arrive(influences.moves);
-        publish();
-        return stats;
+        for (const Guide& guide : call.guides)
+            if (guide.is_led) states_[current].positions[std::size_t(guide.node)] = Real3(guide.to);
+        found.torn = torn();
+        return found;
     }
 
-    double frequency() const override { return frequency_; }
-
-    double longest_step(const Influences& influences) const override { return longest_.under(influences); }
-
-    void undo() override {
-        if (!knows_before_) refuse_undo(body_);
-        restore(before_);
-    }
-
-    Nodes nodes() const override { return {positions_, normals_}; }
-
-    State state() const override {
-        State state = save();
-        state.lag = 0;
-        for (std::size_t i = 0; i < body_.count(); ++i) state.velocities[i] = dvec3(velocity_now(i));
-        return state;
-    }
-
-    State save() const override {
-        State state;
-        for (Real3 p : states_[current].positions) state.positions.push_back(dvec3(p));
-        for (Real3 v : states_[current].velocities) state.velocities.push_back(dvec3(v));
-        state.lag = lag_;
-        return state;
-    }
-
-    void restore(const State& state) override {
-        check(state, body_);
-        knows_before_ = false;
+    void put(const State& state) override {
         for (std::size_t i = 0; i < body_.count(); ++i) {
             states_[current].positions[i] = Real3(state.positions[i]);
             states_[current].velocities[i] = Real3(state.velocities[i]);
         }
-        lag_ = state.lag;
-        if (lag_ > 0 && !scheme_.staggered) {  // a staggered scheme's state: this one wants velocities of now
-            std::vector<Real3>& velocities = states_[between].velocities;
-            for (std::size_t i = 0; i < body_.count(); ++i) velocities[i] = velocity_now(i);
-            std::swap(states_[current].velocities, velocities);
-            lag_ = 0;
+    }
+
+    State get() const override {
+        State state;
+        for (Real3 p : states_[current].positions) state.positions.push_back(dvec3(p));
+        for (Real3 v : states_[current].velocities) state.velocities.push_back(dvec3(v));
+        return state;
+    }
+
+    void remember() override { before_ = states_[current]; }
+    void bring_back() override { states_[current] = before_; }
+
+    std::vector<dvec3> kicked(double kick) const override {
+        std::vector<dvec3> velocities;
+        for (std::size_t i = 0; i < body_.count(); ++i) {
+            const Node node = load(states_[current], i);
+            const Real3 change =
+                node.inverse_mass > 0 ? see(i, states_[current], quiet_).acceleration(node) : Real3(0);
+            velocities.push_back(dvec3(node.velocity + Real(kick) * change));
         }
-        publish();
+        return velocities;
+    }
+
+    void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
+        positions.clear();
+        normals.clear();
+        for (std::size_t i = 0; i < body_.count(); ++i) {
+            const Real3 p = states_[current].positions[i];
+            positions.push_back(vec3(p));
+            normals.push_back(vec3(see(i, states_[current], quiet_).outward(p)));
+        }
     }
 
     std::size_t memory() const override {
         std::size_t bytes = world_.springs.ties.size() * sizeof(Tie);
-        for (const Moving<Real>& state : states_) bytes += 2 * state.positions.size() * sizeof(Real3);
+        for (const NodeStates<Real>& state : states_) bytes += 2 * state.positions.size() * sizeof(Real3);
         return bytes;
     }
 
  private:
-    // The velocity at the time of the positions: half a kick brings up what lies `lag` behind.
-    Real3 velocity_now(std::size_t i) const {
-        const Node node = load(states_[current], i);
-        if (!(lag_ > 0 && node.inverse_mass > 0)) return node.velocity;
-        const double kick = lag_ / (1 + body_.damping * lag_);
-        return node.velocity + Real(kick) * see(i, states_[current], quiet_).acceleration(node);
-    }
-
-    void pass_over_nodes(const Pass& pass, const Turn& turn, Stats& stats) {
-        const Moving<Real>&start = states_[turn.start], &at = states_[turn.at];
-        Moving<Real>&next = states_[turn.next], &total = states_[sum];
+    void pass_over_nodes(const Pass& pass, const Turn& turn, Findings& found) {
+        const NodeStates<Real>&start = states_[turn.start], &at = states_[turn.at];
+        NodeStates<Real>&next = states_[turn.next], &total = states_[sum];
         for (std::size_t i = 0; i < body_.count(); ++i) {
             At eyes = see(i, at, pass);
             const Node node = load(at, i);
             const Real3 change = pass.kick > 0 ? eyes.acceleration(node) : Real3(0);
-            if (pass.part > 0) put(eyes.collect(load(turn.opens ? at : total, i), node, change), total, i);
+            if (pass.part > 0) store(eyes.collect(load(turn.opens ? at : total, i), node, change), total, i);
             const Real3 was = states_[current].positions[i];
             const Node moved = eyes.collide(eyes.integrate(load(start, i), node, change), was);
-            put(moved, next, i);
+            store(moved, next, i);
             if (!turn.ends) continue;
-            stats.largest_speed = std::max(stats.largest_speed, double(glm::length(moved.velocity)));
-            stats.largest_move = std::max(stats.largest_move, double(glm::distance(moved.position, was)));
+            found.largest_speed = std::max(found.largest_speed, double(glm::length(moved.velocity)));
+            found.largest_move = std::max(found.largest_move, double(glm::distance(moved.position, was)));
         }
     }
 
-    // N s, that tips and drags give to the nodes in this pass, and get back.
-    void count_impulses(const Pass& pass, const Turn& turn, Stats& stats) const {
+    // N s, that tips and drags give to the nodes in this pass.
+    void count_impulses(const Pass& pass, const Turn& turn, Findings& found) const {
         if (!(turn.impulse > 0)) return;  // a stage that only drifts
-        const Moving<Real>& at = states_[turn.at];
-        for (std::size_t t = 0; t < stats.reactions.size(); ++t)
+        const NodeStates<Real>& at = states_[turn.at];
+        for (std::size_t t = 0; t < found.by_presses.size(); ++t)
             for (std::size_t i = 0; i < body_.count(); ++i)
-                stats.reactions[t] -=
+                found.by_presses[t] +=
                     turn.impulse * dvec3(see(i, at, pass).tip_force(at.positions[i], int(t)));
-        for (std::size_t d = 0; d < stats.pulls.size(); ++d) {
+        for (std::size_t d = 0; d < found.by_drags.size(); ++d) {
             const std::size_t i = std::size_t(world_.dragged[d]);
-            stats.pulls[d] -= turn.impulse * dvec3(see(i, at, pass).drag_force(at.positions[i], int(d)));
+            found.by_drags[d] += turn.impulse * dvec3(see(i, at, pass).drag_force(at.positions[i], int(d)));
         }
     }
 
-    // Gives the nodes of prescribed motion the velocities that bring them where they shall be.
-    void send_off(std::span<const Move> moves, double seconds) {
-        for (std::size_t i = 0; i < body_.count(); ++i)
-            if (!(body_.inverse_mass[i] > 0)) states_[current].velocities[i] = Real3(0);
-        for (const Move& move : moves)
-            for (std::size_t k = 0; k < move.nodes.size(); ++k) {
-                const std::size_t i = std::size_t(move.nodes[k]);
-                if (body_.inverse_mass[i] > 0) continue;
-                states_[current].velocities[i] =
-                    (Real3(move.to[k]) - states_[current].positions[i]) / Real(seconds);
-            }
-    }
-
-    // Takes the rounding of many steps away.
-    void arrive(std::span<const Move> moves) {
-        for (const Move& move : moves)
-            for (std::size_t k = 0; k < move.nodes.size(); ++k)
-                if (!(body_.inverse_mass[std::size_t(move.nodes[k])] > 0))
-                    states_[current].positions[std::size_t(move.nodes[k])] = Real3(move.to[k]);
-    }
-
-    At see(std::size_t i, const Moving<Real>& at, const Pass& pass) const {
+    At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass) const {
         return {world_,
                 pass,
                 at,
@@ -245,52 +191,36 @@ class Reference final : public Solver {
                 Real(body_.area[i]),
                 Real(body_.cover[i])};
     }
-    Node load(const Moving<Real>& from, std::size_t i) const {
+    Node load(const NodeStates<Real>& from, std::size_t i) const {
         return {from.positions[i], from.velocities[i], Real(body_.inverse_mass[i])};
     }
-    static void put(const Node& node, Moving<Real>& into, std::size_t i) {
+    static void store(const Node& node, NodeStates<Real>& into, std::size_t i) {
         into.positions[i] = node.position;
         into.velocities[i] = node.velocity;
     }
 
     bool torn() const {
-        const Moving<Real>& at = states_[current];
+        const NodeStates<Real>& at = states_[current];
         for (std::size_t i = 0; i < body_.count(); ++i)
             if (see(i, at, quiet_).torn(at.positions[i]) > 0) return true;
         return false;
     }
 
-    void publish() {
-        positions_.clear();
-        for (Real3 p : states_[current].positions) positions_.push_back(vec3(p));
-        normals_.clear();
-        for (std::size_t i = 0; i < body_.count(); ++i)
-            normals_.push_back(vec3(see(i, states_[current], quiet_).outward(states_[current].positions[i])));
-    }
-
-    const Body body_;
-    const Simulation simulation_;
-    const Scheme& scheme_;
-    double frequency_;  // rad/s, the highest of the body with nothing touching it
-    mutable LongestStep longest_{body_, simulation_, frequency_};
-    World world_;
-    const Pass quiet_ = world_.pass;         // nothing touches or moves it
-    double lag_ = 0;                         // s, how far the velocities are behind the positions
-    Moving<Real> states_[4];                 // Where
-    State before_;                           // the last call
-    bool knows_before_ = false;              // whether that can be put back
-    std::vector<vec3> positions_, normals_;  // what nodes() shows
+    const Body& body_;
+    Surroundings world_;
+    const Pass quiet_;            // nothing touches or moves it
+    NodeStates<Real> states_[4];  // Where
+    NodeStates<Real> before_;     // the call
 };
 
 }  // namespace
 
 template <class Real>
-std::unique_ptr<Solver> make_reference(const Body& body, const Simulation& simulation, double frequency) {
-    check(body, simulation);
-    return std::make_unique<Reference<Real>>(body, simulation, frequency);
+std::unique_ptr<Machine> make_reference(const Body& body, const Simulation& simulation) {
+    return std::make_unique<Reference<Real>>(body, simulation);
 }
 
-template std::unique_ptr<Solver> make_reference<float>(const Body&, const Simulation&, double);
-template std::unique_ptr<Solver> make_reference<double>(const Body&, const Simulation&, double);
+template std::unique_ptr<Machine> make_reference<float>(const Body&, const Simulation&);
+template std::unique_ptr<Machine> make_reference<double>(const Body&, const Simulation&);
 
 }  // namespace palpate

@@ -1,0 +1,37 @@
+#include "palpate/solver/guides.h"
+
+namespace palpate {
+
+Guides::Guides(const Body& body) : guide_of_(body.count(), -1) {
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        if (body.inverse_mass[i] > 0) continue;
+        guide_of_[i] = int(guides_.size());
+        guides_.push_back({.node = int(i)});
+        at_.push_back(dvec3(body.positions[i]));
+    }
+}
+
+void Guides::stand(const State& state) {
+    for (std::size_t g = 0; g < guides_.size(); ++g) at_[g] = state.positions[std::size_t(guides_[g].node)];
+}
+
+std::span<const Guide> Guides::lead(std::span<const Move> moves, double seconds) {
+    for (Guide& guide : guides_) guide = {.node = guide.node};
+    for (const Move& move : moves)
+        for (std::size_t k = 0; k < move.nodes.size(); ++k) {
+            const int g = guide_of_[std::size_t(move.nodes[k])];
+            if (g < 0) continue;
+            Guide& guide = guides_[std::size_t(g)];
+            guide.to = dvec3(move.to[k]);
+            guide.velocity = (guide.to - at_[std::size_t(g)]) / seconds;
+            guide.is_led = true;
+        }
+    return guides_;
+}
+
+void Guides::arrive() {
+    for (std::size_t g = 0; g < guides_.size(); ++g)
+        if (guides_[g].is_led) at_[g] = guides_[g].to;
+}
+
+}  // namespace palpate

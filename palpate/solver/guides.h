@@ -1,0 +1,39 @@
+#pragma once
+#include "palpate/body/body.h"
+#include "palpate/body/influences.h"
+
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+/// What leads a node of inverse mass 0 through a call: it keeps this velocity, whatever pulls.
+struct Guide {
+    int node;
+    dvec3 velocity = dvec3(0);  // m/s
+    dvec3 to = dvec3(0);        // m, where the call leaves it, which takes the rounding of many steps away,
+    bool is_led = false;        // if a Move names it; else it stands
+};
+
+/// The guides of all nodes of inverse mass 0, in their order. It remembers where they stand, so that nobody
+/// has to ask the machine.
+class Guides {
+ public:
+    explicit Guides(const Body& body);
+
+    /// The nodes are there now.
+    void stand(const State& state);
+
+    /// Leads them in `seconds` to where the moves say.
+    std::span<const Guide> lead(std::span<const Move> moves, double seconds);
+
+    /// They have arrived.
+    void arrive();
+
+ private:
+    std::vector<int> guide_of_;  // each node's, or -1
+    std::vector<Guide> guides_;
+    std::vector<dvec3> at_;  // m, where they stand
+};
+
+}  // namespace palpate
