@@ -186,8 +186,12 @@ void add_run(CLI::App& app) {
         ->check(CLI::Range(1, most_threads));
     command->add_option("--integrator", arguments->integrator, "see: palpate list integrators");
     auto* frames = command->add_option("--frames", settings.frames, "stop after so many frames of 1/60 s");
-    auto* steps = command->add_option("--steps", settings.steps, "stop after so many steps of the solver")
-                      ->excludes(frames);
+    auto* steps =
+        command
+            ->add_option("--steps", settings.steps,
+                         "stop after so many steps of the solver; where it chooses their length, as "
+                         "many as nothing touches take")
+            ->excludes(frames);
     for (auto* count : {frames, steps}) count->check(from_to(0, 1e8));
     command->add_option("--until-rest", arguments->rest, "end at rest, by the rule speed (no value) or move")
         ->expected(0, 1)

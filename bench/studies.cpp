@@ -3,6 +3,7 @@
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
+#include "palpate/solver/forces.h"
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 
@@ -119,7 +120,7 @@ Growth growth_per_step(Integrator integrator, double step) {
     const double frequency = highest_frequency(body), seconds = step / frequency;
     body.positions[1].x += 1e-6f;
     auto solver = make_exact_solver(
-        body, {.integrator = integrator, .step = seconds, .gravity = vec3(0), .frame = 1}, frequency);
+        body, {.integrator = integrator, .step = seconds, .force = true, .gravity = vec3(0)}, frequency);
     auto size = [&] {  // of the vibration: displacement and velocity together
         const State s = solver->state();
         const double x = glm::distance(s.positions[0], s.positions[1]) - double(0.1f);

@@ -60,10 +60,12 @@ function(palpate_embed target)
     foreach(file ${ARGN})
         get_filename_component(name ${file} NAME)
         set(out ${CMAKE_CURRENT_BINARY_DIR}/embedded/${name}.h)
+        file(STRINGS ${file} included REGEX "^#include \"")
+        list(TRANSFORM included REPLACE "^#include \"(.*)\"$" "${PROJECT_SOURCE_DIR}/\\1")
         add_custom_command(OUTPUT ${out}
-            COMMAND ${CMAKE_COMMAND} -DIN=${CMAKE_CURRENT_SOURCE_DIR}/${file} -DOUT=${out}
+            COMMAND ${CMAKE_COMMAND} -DIN=${CMAKE_CURRENT_SOURCE_DIR}/${file} -DOUT=${out} -DROOT=${PROJECT_SOURCE_DIR}
                     -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
-            DEPENDS ${file} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake VERBATIM)
+            DEPENDS ${file} ${included} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake VERBATIM)
         target_sources(${target} PRIVATE ${out})
     endforeach()
 endfunction()

@@ -73,11 +73,7 @@ Subject the_dragon() {
 }
 
 Simulation with(const Machine::Mover& mover) {
-    return {.backend = mover.backend,
-            .threads = mover.threads,
-            .step = one_step,
-            .force = true,
-            .frame = steps_a_frame * one_step};
+    return {.backend = mover.backend, .threads = mover.threads, .step = one_step, .force = true};
 }
 
 bool on_card(const Solver& solver) { return solver.gpu_nodes().positions != 0; }

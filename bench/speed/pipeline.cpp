@@ -34,8 +34,7 @@ Case frame(int grid, const Body& body, const Machine& machine, const Machine::Mo
                          .threads = mover.threads,
                          .integrator = integrator,
                          .step = frame_step,
-                         .force = true,
-                         .frame = frame_step};
+                         .force = true};
     std::shared_ptr<Solver> solver = make_solver(body, how, machine.gl());
     auto points = std::make_shared<Points>(body);
     return repeating(

@@ -73,7 +73,7 @@ Case stepping(std::string name, const Body& body, const Simulation& how, const g
     Simulation simulation = how;
     simulation.step = 1e-5;
     simulation.force = true;
-    simulation.frame = 1e-3;
+    simulation.shortest_step = 0;
     std::shared_ptr<Solver> solver = make_solver(body, simulation, context);
     const double nodes = double(body.count());
     auto go = [=](int steps) {

@@ -23,7 +23,7 @@ int main(int argc, char** argv) try {
     Press tip{.velocity = {0, -0.25f * size.y, 0}, .radius = 0.2f * size.x, .stiffness = 400};
     tip.centre = top + vec3(0, tip.radius, 0);
 
-    auto solver = make_solver(body, {.gravity = vec3(0), .contact = pressure_per_metre(tip)});
+    auto solver = make_solver(body, {.gravity = vec3(0)});
     for (int frame = 1; frame <= 60; ++frame) {
         const Stats stats = solver->step(1.0 / 60, {.presses = {&tip, 1}});
         tip.centre += tip.velocity / 60.0f;

@@ -160,20 +160,4 @@ std::size_t inverted_cells(const Body& body, std::span<const vec3> positions) {
     return inverted;
 }
 
-Energy energy(const Body& body, const State& state) {
-    check_count(body, std::min(state.positions.size(), state.velocities.size()));
-    Energy sum;
-    const Table springs = table(body);
-    for (std::size_t i = 0; i < body.count(); ++i) {
-        const dvec3 v = state.velocities[i];
-        if (body.inverse_mass[i] > 0) sum.kinetic += 0.5 * glm::dot(v, v) / body.inverse_mass[i];
-        for (const Tie& tie : springs.of(i)) {
-            if (tie.to < int(i)) continue;  // each spring once; -1 is no spring
-            const double stretch = glm::distance(state.positions[i], state.positions[tie.to]) - tie.rest;
-            sum.elastic += 0.5 * tie.share * tie.stiffness * stretch * stretch;
-        }
-    }
-    return sum;
-}
-
 }  // namespace palpate

@@ -124,12 +124,4 @@ struct State {
 /// avoid it.
 std::size_t inverted_cells(const Body& body, std::span<const vec3> positions);
 
-/// What motion and stretched springs hold.
-struct Energy {
-    double kinetic = 0;  // J
-    double elastic = 0;  // J, in the springs
-};
-/// `state`: with velocities at the time of the positions.
-Energy energy(const Body& body, const State& state);
-
 }  // namespace palpate

@@ -50,6 +50,7 @@ struct Influences {
     std::span<const Motion> colliders =
         {};               // one for each of Simulation::colliders; or none, and all stand still
     vec3 wind = vec3(0);  // m/s; felt where Simulation::air is above 0
+    double arrival = 0;   // s, in which moves lead to their places; 0: by the end of the call
 };
 
 }  // namespace palpate

@@ -47,6 +47,7 @@ inline std::span<const Named<Integrator>> names(Integrator) {
 }
 
 inline constexpr int most_threads = 256;
+inline constexpr double frame_seconds = 1.0 / 60;  // from picture to picture
 
 /// How a body is moved.
 struct Simulation {
@@ -54,15 +55,13 @@ struct Simulation {
     int threads =
         1;  // of the backend cpu, at most most_threads; the motion is the same to the bit with any number
     Integrator integrator = Integrator::verlet;
-    double step = 0;                    // s; 0 chooses 0.7 of the stability bound
-    bool force = false;                 // accept a step above the bound
+    double step = 0;     // s; 0 chooses 0.7 of the stability bound
+    bool force = false;  // accept a step above the bound
+    /// s: a body that needs shorter steps is refused, since a frame would take more than 1,000.
+    double shortest_step = frame_seconds / 1000;
     vec3 gravity = vec3(0, -9.81f, 0);  // m/s²
     float air = 0;  // kg/m³: how dense the air is that moves, or stands; 1.2, or 0 for none
     std::vector<Collider> colliders = {};  // at most 16, with at most 1,000 triangles in all
-    // The strongest to come, for the stability bound:
-    float contact = 0;        // Pa/m, of all presses together (pressure_per_metre)
-    float pull = 0;           // N/m, of all drags together
-    double frame = 1.0 / 60;  // s, the longest time that one call of Solver::step is asked for
 };
 
 }  // namespace palpate

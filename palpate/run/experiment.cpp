@@ -103,20 +103,6 @@ int number_of_new_shapes() {
     return ++last;
 }
 
-// Room for a hand in the step: the bound takes all of its strength to act on the lightest node.
-void expect_hands(Models& models) {
-    float pull = 0, pressure = 0;
-    for (const Model& model : models.models) {
-        const Strength strength = strength_for(model.body);
-        float most = 0;  // 1/kg, of the lightest
-        for (float inverse : model.body.inverse_mass) most = std::max(most, inverse);
-        if (most > 0) pull = std::max(pull, strength.pull / most);
-        pressure = std::max(pressure, strength.pressure);
-    }
-    models.simulation.pull += pull;
-    models.simulation.contact += pressure;
-}
-
 // Of bodies that are still what they were: it takes the longest to find out.
 std::vector<double> known_frequencies(const Models& models, const Models& before, const Play& play) {
     std::vector<double> known(models.models.size(), 0);
@@ -153,7 +139,6 @@ Experiment::Made Experiment::make(const std::vector<Change>& changes) const {
 Experiment::Made Experiment::put_together(const std::vector<Change>& changes, Scene scene, Models models,
                                           const Experiment* other) const {
     scene.simulation.force = models.simulation.force = true;
-    expect_hands(models);
     Made made{.changes = changes,
               .scene = std::make_unique<Scene>(std::move(scene)),
               .models = std::make_unique<Models>(std::move(models)),
@@ -382,7 +367,7 @@ bool Experiment::takes(const Hands& hands) const {
     for (const Press& press : hands.presses)
         if (!(press.radius > 0 && press.stiffness >= 0 && pressure_per_metre(press) <= most * pressure))
             return false;
-    for (const Hands::Pull& pull : hands.pulls) {
+    for (const BodyDrag& pull : hands.pulls) {
         if (pull.body >= models.size()) return false;
         const Body& body = models[pull.body].body;
         if (pull.drag.node < 0 || std::size_t(pull.drag.node) >= body.count()) return false;

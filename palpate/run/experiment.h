@@ -3,6 +3,7 @@
 #include "palpate/run/recording.h"
 #include "palpate/run/report.h"
 #include "palpate/scene/build.h"
+#include "palpate/solver/forces.h"
 
 #include <deque>
 #include <memory>

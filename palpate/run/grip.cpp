@@ -7,21 +7,21 @@
 namespace palpate {
 
 std::optional<Drag> Grip::drag(double time, double frame, const std::vector<Model>& models,
-                               const std::vector<std::unique_ptr<Solver>>& solvers) {
+                               const World& world) {
     if (!within(recipe_.path, time)) return std::nullopt;
-    if (node_ < 0) take_hold(models, solvers);
+    if (node_ < 0) take_hold(models, world);
     const vec3 here = centre(time), there = centre(time + frame);
     return Drag{node_, here, (there - here) / float(frame), recipe_.stiffness};
 }
 
-void Grip::take_hold(const std::vector<Model>& models, const std::vector<std::unique_ptr<Solver>>& solvers) {
+void Grip::take_hold(const std::vector<Model>& models, const World& world) {
     const vec3 point = recipe_.near.value_or(recipe_.path.front().position);
     float nearest = std::numeric_limits<float>::max();
     vec3 held(0);
     for (std::size_t m = 0; m < models.size(); ++m) {
         const Body& body = models[m].body;
         if (!recipe_.body.empty() && body.name != recipe_.body) continue;
-        const auto positions = solvers[m]->nodes().positions;
+        const auto positions = world.solver(m).nodes().positions;
         for (std::size_t i = 0; i < body.count(); ++i) {
             const float distance = glm::distance(positions[i], point);
             if (!(body.inverse_mass[i] > 0) || !(distance < nearest)) continue;

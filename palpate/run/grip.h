@@ -1,9 +1,8 @@
 #pragma once
 #include "palpate/body/influences.h"
 #include "palpate/scene/build.h"
-#include "palpate/solver/solver.h"
+#include "palpate/solver/world.h"
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,8 +15,7 @@ class Grip {
 
     /// The drag for the frame from `time` on, or none while the tool is away. At the path's first time it
     /// takes hold of the nearest node that can move. Throws Error if there is none.
-    std::optional<Drag> drag(double time, double frame, const std::vector<Model>& models,
-                             const std::vector<std::unique_ptr<Solver>>& solvers);
+    std::optional<Drag> drag(double time, double frame, const std::vector<Model>& models, const World& world);
 
     /// The number of the body that it has hold of.
     std::size_t body() const { return body_; }
@@ -26,7 +24,7 @@ class Grip {
     vec3 centre(double time) const { return origin_ + position(recipe_.path, time); }
 
  private:
-    void take_hold(const std::vector<Model>& models, const std::vector<std::unique_ptr<Solver>>& solvers);
+    void take_hold(const std::vector<Model>& models, const World& world);
 
     ToolRecipe recipe_;
     std::size_t body_ = 0;

@@ -50,20 +50,15 @@ std::vector<vec3> places(const MovedNodes& moved, const Path& path, const Body& 
 
 }  // namespace
 
-// On each body: the tips, which all feel, and what is its own.
+// In the order of the acts: the scene's tools come first; then hands.
 struct Play::Acting {
-    struct OnBody {
-        std::vector<Drag> drags;
-        std::vector<std::size_t> tool_of_drag;  // the scene's come first; then those of hands,
-        std::vector<std::size_t> pull_of_drag;  // one of Hands::pulls each
-        std::vector<Move> moves;
-    };
     std::vector<Press> presses;
-    std::vector<std::size_t> tool_of_press;  // likewise the scene's first
-    std::vector<OnBody> bodies;
+    std::vector<std::size_t> tool_of_press;
+    std::vector<BodyDrag> drags;
+    std::vector<std::size_t> tool_of_drag;
     std::vector<std::vector<vec3>> places;  // that the moves lead to
+    std::vector<BodyMove> moves;
     std::vector<Motion> colliders;
-    std::size_t pulls = 0;  // of hands, on all bodies
     vec3 wind = vec3(0);
 };
 
@@ -85,15 +80,12 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
     : scene_(scene),
       made_(made),
       report_(report),
-      team_(made.simulation.threads),
+      world_(made.simulation, context),
       skins_(made.models.size() + made.stills.size()),
       tools_(scene.tools.size()) {
-    Simulation simulation = made.simulation;
-    simulation.frame = frame_seconds;
     for (const Model& model : made.models) {
-        const std::size_t m = solvers_.size();
-        solvers_.push_back(
-            make_solver(model.body, simulation, context, m < frequencies.size() ? frequencies[m] : 0));
+        const std::size_t m = world_.count();
+        world_.add(model.body, m < frequencies.size() ? frequencies[m] : 0);
         report.bodies.push_back(describe(model));
     }
     for (const Still& still : made.stills) {
@@ -126,7 +118,7 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
                               is_sheet(scene.surfaces[s], surface)};
     }
     velocities_.resize(skins_.size());
-    if (!on_gpu(simulation.backend)) map();
+    if (!on_gpu(made.simulation.backend)) map();
 }
 
 const std::vector<Skin>& Play::skins() const {
@@ -134,26 +126,18 @@ const std::vector<Skin>& Play::skins() const {
     return skins_;
 }
 
-int Play::steps_per_frame() const {
-    double shortest = frame_seconds;
-    for (const auto& solver : solvers_) shortest = std::min(shortest, solver->longest_step({}));
-    return steps_within(frame_seconds, shortest);
-}
+int Play::steps_per_frame() const { return steps_within(frame_seconds, world_.shortest_step(frame_seconds)); }
 
 std::vector<State> Play::states() const {
     std::vector<State> states;
-    for (const auto& solver : solvers_) states.push_back(solver->state());
+    for (std::size_t m = 0; m < world_.count(); ++m) states.push_back(world_.solver(m).state());
     return states;
 }
 
-std::vector<State> Play::save() const {
-    std::vector<State> states;
-    for (const auto& solver : solvers_) states.push_back(solver->save());
-    return states;
-}
+std::vector<State> Play::save() const { return world_.save(); }
 
 void Play::restore(const std::vector<State>& states) {
-    for (std::size_t m = 0; m < solvers_.size(); ++m) solvers_[m]->restore(states[m]);
+    world_.restore(states);
     mapped_ = false;
     before_.clear();  // how fast skins moved is not known any more
     for (auto& velocities : velocities_) velocities.clear();
@@ -183,11 +167,7 @@ void Play::take_probes(Play& from) {
     }
 }
 
-std::size_t Play::memory() const {
-    std::size_t bytes = 0;
-    for (const auto& solver : solvers_) bytes += solver->memory();
-    return bytes;
-}
+std::size_t Play::memory() const { return world_.memory(); }
 
 std::vector<Motion> Play::colliders(double time, double seconds) const {
     std::vector<Motion> motions(scene_.colliders.size());
@@ -246,50 +226,42 @@ bool Play::advance(double time, double seconds, const Hands& hands) {
 
 Play::Acting Play::acting(double time, double seconds, const Hands& hands) {
     Acting on;
-    on.bodies.resize(solvers_.size());
     for (std::size_t t = 0; t < handles_.size(); ++t) {
         if (auto* tip = std::get_if<Tip>(&handles_[t])) {
             if (!tip->is_there(time)) continue;
             on.presses.push_back(tip->press(time, seconds, skins()));
             on.tool_of_press.push_back(t);
         } else if (auto* grip = std::get_if<Grip>(&handles_[t])) {
-            const auto drag = grip->drag(time, seconds, made_.models, solvers_);
+            const auto drag = grip->drag(time, seconds, made_.models, world_);
             if (!drag) continue;
-            on.bodies[grip->body()].drags.push_back(*drag);
-            on.bodies[grip->body()].tool_of_drag.push_back(t);
+            on.drags.push_back({grip->body(), *drag});
+            on.tool_of_drag.push_back(t);
         }
     }
     on.presses.insert(on.presses.end(), hands.presses.begin(), hands.presses.end());
-    for (std::size_t p = 0; p < hands.pulls.size(); ++p) {
-        Acting::OnBody& body = on.bodies[hands.pulls[p].body];
-        body.drags.push_back(hands.pulls[p].drag);
-        body.pull_of_drag.push_back(p);
-    }
-    on.pulls = hands.pulls.size();
+    on.drags.insert(on.drags.end(), hands.pulls.begin(), hands.pulls.end());
     for (std::size_t i = 0; i < made_.moves.size(); ++i) {
         const MovedNodes& moved = made_.moves[i];
         on.places.push_back(
             places(moved, scene_.moves[i].path, made_.models[moved.body].body, time + seconds));
     }
     for (std::size_t i = 0; i < made_.moves.size(); ++i)
-        on.bodies[made_.moves[i].body].moves.push_back({made_.moves[i].nodes, on.places[i]});
+        on.moves.push_back({made_.moves[i].body, {made_.moves[i].nodes, on.places[i]}});
     on.colliders = colliders(time, seconds);
     if (!scene_.wind.empty()) on.wind = position(scene_.wind, time + seconds / 2);
     return on;
 }
 
 bool Play::step(double seconds, const Acting& on) {
-    std::vector<Stats> stats;
-    for (std::size_t m = 0; m < solvers_.size(); ++m) {
-        stats.push_back(solvers_[m]->step(seconds, {.presses = on.presses,
-                                                    .drags = on.bodies[m].drags,
-                                                    .moves = on.bodies[m].moves,
-                                                    .colliders = on.colliders,
-                                                    .wind = on.wind}));
-        if (!stats[m].diverged) continue;
-        report_.notes.push_back(
-            fmt::format("body {} diverged with steps of {:.4g} s", report_.bodies[m].name, stats[m].step));
-        for (std::size_t other = 0; other < m; ++other) solvers_[other]->undo();
+    WorldStats stats = world_.step(seconds, {.presses = on.presses,
+                                             .drags = on.drags,
+                                             .moves = on.moves,
+                                             .colliders = on.colliders,
+                                             .wind = on.wind});
+    if (stats.diverged) {
+        const std::size_t m = *stats.diverged;
+        report_.notes.push_back(fmt::format("body {} diverged with steps of {:.4g} s", report_.bodies[m].name,
+                                            stats.bodies[m].step));
         return false;
     }
     stats_ = std::move(stats);
@@ -298,32 +270,36 @@ bool Play::step(double seconds, const Acting& on) {
 
 void Play::map() const {
     Timed timed(report_.seconds.map);
-    for (std::size_t m = 0; m < solvers_.size(); ++m)
-        deform(made_.models[m].embedding, solvers_[m]->nodes(), skins_[m].positions, skins_[m].normals,
-               nullptr, &team_);
+    for (std::size_t m = 0; m < world_.count(); ++m)
+        deform(made_.models[m].embedding, nodes(m), skins_[m].positions, skins_[m].normals, nullptr,
+               &world_.team());
     mapped_ = true;
 }
 
 void Play::record(const Acting& on, double time, double seconds) {
     std::vector<dvec3> impulses(handles_.size(), dvec3(0));
     tools_.assign(handles_.size(), std::nullopt);
-    pushes_.presses.assign(on.presses.size() - on.tool_of_press.size(), dvec3(0));
-    pushes_.pulls.assign(on.pulls, dvec3(0));
+    // Sums over time are impulses; what hands feel is a mean force.
+    const std::size_t tips = on.tool_of_press.size(), grips = on.tool_of_drag.size();
+    pushes_ = {};
+    for (std::size_t p = 0; p < on.presses.size(); ++p)
+        if (p < tips)
+            impulses[on.tool_of_press[p]] += stats_.reactions[p];
+        else
+            pushes_.presses.push_back(stats_.reactions[p] / seconds);
+    for (std::size_t d = 0; d < on.drags.size(); ++d)
+        if (d < grips)
+            impulses[on.tool_of_drag[d]] += stats_.pulls[d];
+        else
+            pushes_.pulls.push_back(stats_.pulls[d] / seconds);
     for (std::size_t t : on.tool_of_press) tools_[t] = {std::get<Tip>(handles_[t]).centre(time), {}};
-    for (std::size_t m = 0; m < solvers_.size(); ++m) {
-        const Stats& stats = stats_[m];
-        const std::size_t tips = on.tool_of_press.size(), grips = on.bodies[m].tool_of_drag.size();
-        for (std::size_t p = 0; p < tips; ++p) impulses[on.tool_of_press[p]] += stats.reactions[p];
-        for (std::size_t p = tips; p < on.presses.size(); ++p)
-            pushes_.presses[p - tips] += stats.reactions[p] / seconds;
-        for (std::size_t d = grips; d < on.bodies[m].drags.size(); ++d)
-            pushes_.pulls[on.bodies[m].pull_of_drag[d - grips]] = stats.pulls[d] / seconds;
-        for (std::size_t d = 0; d < grips; ++d) {
-            const std::size_t t = on.bodies[m].tool_of_drag[d];
-            impulses[t] += stats.pulls[d];
-            const std::size_t node = std::size_t(on.bodies[m].drags[d].node);
-            tools_[t] = {std::get<Grip>(handles_[t]).centre(time), nodes(m).positions[node]};
-        }
+    for (std::size_t d = 0; d < grips; ++d) {
+        const auto& [body, drag] = on.drags[d];
+        const std::size_t t = on.tool_of_drag[d];
+        tools_[t] = {std::get<Grip>(handles_[t]).centre(time), nodes(body).positions[std::size_t(drag.node)]};
+    }
+    for (std::size_t m = 0; m < world_.count(); ++m) {
+        const Stats& stats = stats_.bodies[m];
         Report::Body& body = report_.bodies[m];
         body.steps += stats.steps;
         if (body.step == 0 || stats.step < body.step) body.step = stats.step;
@@ -346,7 +322,7 @@ void Play::record(const Acting& on, double time, double seconds) {
         tool.indentation.push_back(depth);
     }
     // From a GPU nodes are not fetched for this alone.
-    for (std::size_t m = 0; mapped_ && m < solvers_.size(); ++m) {
+    for (std::size_t m = 0; mapped_ && m < world_.count(); ++m) {
         std::size_t& worst = report_.bodies[m].inverted_cells;
         worst = std::max(worst, inverted_cells(made_.models[m].body, nodes(m).positions));
     }

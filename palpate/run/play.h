@@ -1,13 +1,11 @@
 #pragma once
-#include "palpate/base/team.h"
 #include "palpate/run/grip.h"
 #include "palpate/run/probe.h"
 #include "palpate/run/report.h"
 #include "palpate/run/tip.h"
 #include "palpate/scene/build.h"
-#include "palpate/solver/solver.h"
+#include "palpate/solver/world.h"
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <variant>
@@ -18,12 +16,8 @@ namespace palpate {
 /// What hands do to bodies during a frame, besides the scene's own tools. A body takes most_presses and
 /// most_drags, those of tools included.
 struct Hands {
-    struct Pull {
-        std::size_t body = 0;  // its number
-        Drag drag;
-    };
     std::vector<Press> presses;
-    std::vector<Pull> pulls;
+    std::vector<BodyDrag> pulls;
 
     bool empty() const { return presses.empty() && pulls.empty(); }
 };
@@ -59,7 +53,7 @@ class Play {
     /// Those that are felt, which are the other's no more.
     void take_probes(Play& from);
 
-    double frequency(std::size_t body) const { return solvers_[body]->frequency(); }
+    double frequency(std::size_t body) const { return world_.solver(body).frequency(); }
 
     /// Bytes that all moving states take.
     std::size_t memory() const;
@@ -68,7 +62,7 @@ class Play {
     int steps_per_frame() const;
 
     /// What the solvers said of the last frame, one a body; empty before the first.
-    std::span<const Stats> stats() const { return stats_; }
+    std::span<const Stats> stats() const { return stats_.bodies; }
 
     /// The bodies at one moment, each with its velocities at the time of its positions.
     std::vector<State> states() const;
@@ -81,8 +75,8 @@ class Play {
     /// What all tools make of a skin.
     std::vector<Dent> dents(std::size_t skin) const;
 
-    Nodes nodes(std::size_t body) const { return solvers_[body]->nodes(); }
-    GpuNodes gpu_nodes(std::size_t body) const { return solvers_[body]->gpu_nodes(); }
+    Nodes nodes(std::size_t body) const { return world_.solver(body).nodes(); }
+    GpuNodes gpu_nodes(std::size_t body) const { return world_.solver(body).gpu_nodes(); }
 
     /// Where a tool is, if it is there, and the node that it drags, if it does.
     struct Tool {
@@ -105,9 +99,8 @@ class Play {
     const Scene& scene_;
     const Models& made_;
     Report& report_;
-    std::vector<std::unique_ptr<Solver>> solvers_;
-    std::vector<Stats> stats_;
-    mutable Team team_;  // that carries the skins
+    mutable World world_;  // whose team carries the skins, too
+    WorldStats stats_;
     mutable std::vector<Skin> skins_;
     mutable bool mapped_ = false;                          // they are where the nodes are
     std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool

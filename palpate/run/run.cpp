@@ -13,6 +13,7 @@
 #include "palpate/run/plot.h"
 #include "palpate/run/show.h"
 #include "palpate/scene/build.h"
+#include "palpate/solver/forces.h"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,6 @@
 
 namespace palpate {
 
-constexpr double frame_seconds = 1.0 / 60;
-
 /// When a run may end before its time.
 enum class Rest {
     none,
@@ -29,7 +27,7 @@ struct RunSettings {
     // One of these, or the scene's own duration.
     std::optional<int> frames;  // of 1/60 s
     /// Of the solver: of exactly the scene's step where it gives one, and then a frame is as many of them as
-    /// fit into 1/60 s, at least one.
+    /// fit into 1/60 s, at least one; else for as long as so many take that nothing touches.
     std::optional<long> steps;
     /// Ends the run as soon as everything is at rest and every path has come to its end; without a number
     /// above, after ten times the scene's duration at the latest.

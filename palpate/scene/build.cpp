@@ -638,12 +638,6 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
     result.simulation = scene.simulation;
     for (const ColliderRecipe& recipe : scene.colliders) add_collider(recipe, scene, result);
     look_at_paths(scene, result);
-    for (const ToolRecipe& tool : scene.tools)
-        if (tool.kind == ToolKind::press)
-            result.simulation.contact +=
-                pressure_per_metre({.radius = tool.radius, .stiffness = tool.stiffness});
-        else if (tool.kind == ToolKind::drag)
-            result.simulation.pull += tool.stiffness;
     return result;
 }
 

@@ -30,11 +30,8 @@ void check_numbers(const Simulation& simulation) {
     require(is_finite(simulation.gravity), "a gravity that is not finite", "give it in m/s²");
     require(is_some(simulation.air), "air whose density is negative or not finite",
             "use 1.2 kg/m³, or 0 for none");
-    require(is_some(simulation.contact) && is_some(simulation.pull),
-            "a contact or a pull that is negative or not finite",
-            "say how strong presses and drags will be, or 0");
-    require(simulation.frame > 0 && std::isfinite(simulation.frame), "a frame that is not above 0 s",
-            "say how long the calls of step() will be");
+    require(is_some(simulation.shortest_step), "a shortest step that is negative or not finite",
+            "give it in s, or 0 to accept any");
 }
 
 // Nothing where a shape is one that nodes can be kept out of; else what is wrong with it.
@@ -133,6 +130,8 @@ void check(double seconds, const Influences& influences, const Body& body, const
                     is_finite(motion.velocity) && is_finite(motion.spin),
                 "a collider's motion that is not finite", "hand in places in m and speeds in m/s");
     require(is_finite(influences.wind), "a wind that is not finite", "give it in m/s");
+    require(influences.arrival >= 0 && std::isfinite(influences.arrival),
+            "an arrival that is negative or not finite", "give it in s, or 0");
 }
 
 void refuse_undo(const Body& body) {

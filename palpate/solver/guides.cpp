@@ -1,5 +1,7 @@
 #include "palpate/solver/guides.h"
 
+#include <algorithm>
+
 namespace palpate {
 
 Guides::Guides(const Body& body) : guide_of_(body.count(), -1) {
@@ -15,15 +17,17 @@ void Guides::stand(const State& state) {
     for (std::size_t g = 0; g < guides_.size(); ++g) at_[g] = state.positions[std::size_t(guides_[g].node)];
 }
 
-std::span<const Guide> Guides::lead(std::span<const Move> moves, double seconds) {
+std::span<const Guide> Guides::lead(const Influences& influences, double seconds) {
+    const double arrival = std::max(influences.arrival, seconds);
     for (Guide& guide : guides_) guide = {.node = guide.node};
-    for (const Move& move : moves)
+    for (const Move& move : influences.moves)
         for (std::size_t k = 0; k < move.nodes.size(); ++k) {
             const int g = guide_of_[std::size_t(move.nodes[k])];
             if (g < 0) continue;
             Guide& guide = guides_[std::size_t(g)];
-            guide.to = dvec3(move.to[k]);
-            guide.velocity = (guide.to - at_[std::size_t(g)]) / seconds;
+            const dvec3 from = at_[std::size_t(g)], to(move.to[k]);
+            guide.velocity = (to - from) / arrival;
+            guide.to = arrival > seconds ? from + seconds * guide.velocity : to;
             guide.is_led = true;
         }
     return guides_;

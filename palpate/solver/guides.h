@@ -24,8 +24,8 @@ class Guides {
     /// The nodes are there now.
     void stand(const State& state);
 
-    /// Leads them in `seconds` to where the moves say.
-    std::span<const Guide> lead(std::span<const Move> moves, double seconds);
+    /// Leads them through a call of `seconds` towards where the moves say.
+    std::span<const Guide> lead(const Influences& influences, double seconds);
 
     /// They have arrived.
     void arrive();

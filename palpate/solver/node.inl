@@ -1,4 +1,5 @@
-// node.inl: the physics of one node, written once for every backend; what it may not enter is in obstacles.inl.
+// node.inl: the physics of one node, written once for every machine; what its springs do is in terms/springs.inl, what it
+// may not enter in obstacles.inl.
 //
 // The words are GLSL's; C++ and CUDA bring the same ones (dot, cross, max, min, inversesqrt). In C++ and CUDA this
 // file is included inside the backend's own struct, in GLSL at global scope, and finds there:
@@ -34,8 +35,8 @@
 #ifndef OBSTACLES
 #define OBSTACLES pass.obstacles
 #endif
-#ifndef DASHPOTS
-#define DASHPOTS (pass.link_damping > 0.0f)
+#ifndef LINK_DAMPING
+#define LINK_DAMPING (pass.link_damping > 0.0f)
 #endif
 #ifndef WIND
 #define WIND (pass.wind.w > 0.0f)
@@ -77,31 +78,7 @@ ASIDE Real3 outward(Real3 position) {
     return sum;
 }
 
-#ifndef OWN_PULL
-// N/m: the force of a spring by its length, whose square is given.
-FN Real pull(int l, Real square) { return share(l) * (stiffness(l) - tension(l) * inversesqrt(square)); }
-#endif
-
-// Each spring pulls with stiffness x (length - rest length) towards its neighbour (2005, eq. 1 without the factor 1/2).
-FN Real3 spring_force(Real3 position) {
-    Real3 force = Real3(0.0f, 0.0f, 0.0f);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
-        Real3 along = toward(position, l);
-        force += pull(l, squared(along)) * along;
-    }
-    return force;
-}
-
-// Each spring resists the speed at which it stretches.
-ASIDE Real3 dashpots(Node node) {
-    Real3 force = Real3(0.0f, 0.0f, 0.0f);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
-        Real3 along = unit(toward(node.position, l));
-        Real stretching = dot(passing(node.velocity, l), along);
-        force += (share(l) * stiffness(l) * Real(pass.link_damping) * stretching) * along;
-    }
-    return force;
-}
+#include "palpate/solver/terms/springs.inl"
 
 // A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
 FN Real3 tip_force(Real3 position, int i) {
@@ -135,7 +112,7 @@ FN Real3 tool_force(Real3 position) {
 
 FN Real3 acceleration(Node node) {
     Real3 force = spring_force(node.position);
-    if (DASHPOTS) force += dashpots(node);
+    if (LINK_DAMPING) force += spring_damping(node);
     if (TIPS + DRAGS > 0) force += tool_force(node.position);
     if (WIND) force += wind_force(node);
     return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;
@@ -161,14 +138,7 @@ FN Node collect(Node sum, Node now, Real3 change) {
     return sum;
 }
 
-// How many things are wrong with a node: its place is no number, or a spring is stretched to ten times its length. No
-// tissue does that; a motion that blows up soon does.
+// How many things are wrong with a node: its place is no number, or a spring is torn.
 ASIDE Real torn(Real3 position) {
-    Real one = Real(1.0f), none = Real(0.0f);
-    Real wrong = select(dot(position, position) <= Real(1e30f), none, one);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
-        Real beyond = share(l) * stiffness(l) * (squared(toward(position, l)) - longest(l));
-        wrong += select(beyond <= none, none, one);
-    }
-    return wrong;
+    return select(dot(position, position) <= Real(1e30f), Real(0.0f), Real(1.0f)) + torn_springs(position);
 }

@@ -19,11 +19,11 @@ struct Causes {
     Integrator integrator;
     double frequency;              // rad/s, of the body alone
     double damping, link_damping;  // 1/s, s
-    float contact, pull;           // Pa/m, N/m
+    ToolStiffness tools;
 };
 
 double step_of(const Body& body, const Causes& causes) {
-    const double touched = touched_frequency(body, causes.frequency, causes.contact, causes.pull);
+    const double touched = touched_frequency(body, causes.frequency, causes.tools.contact, causes.tools.pull);
     return automatic_step(causes.integrator, touched, causes.damping, causes.link_damping);
 }
 
@@ -64,7 +64,7 @@ struct Candidate {
     std::function<void(Causes&)> leave_out;
 };
 
-std::vector<Candidate> candidates(const Body& body, const Simulation& simulation) {
+std::vector<Candidate> candidates(const Body& body, const Causes& causes) {
     std::vector<Candidate> all;
     if (body.link_damping > 0)
         all.push_back({fmt::format("lower link_damping = {:.3g} s", body.link_damping),
@@ -72,10 +72,11 @@ std::vector<Candidate> candidates(const Body& body, const Simulation& simulation
     if (body.damping > 0)
         all.push_back(
             {fmt::format("lower damping = {:.3g} 1/s", body.damping), [](Causes& c) { c.damping = 0; }});
-    if (simulation.contact > 0)
-        all.push_back({"use softer or wider tools that press", [](Causes& c) { c.contact = 0; }});
-    if (simulation.pull > 0) all.push_back({"use softer tools that drag", [](Causes& c) { c.pull = 0; }});
-    if (simulation.integrator != Integrator::verlet)
+    if (causes.tools.contact > 0)
+        all.push_back({"use softer or wider tools that press", [](Causes& c) { c.tools.contact = 0; }});
+    if (causes.tools.pull > 0)
+        all.push_back({"use softer tools that drag", [](Causes& c) { c.tools.pull = 0; }});
+    if (causes.integrator != Integrator::verlet)
         all.push_back({"choose verlet", [](Causes& c) { c.integrator = Integrator::verlet; }});
     if (const auto [even, light] = without_light_nodes(body); light > 0)
         all.push_back(
@@ -95,10 +96,10 @@ std::vector<Candidate> candidates(const Body& body, const Simulation& simulation
 }  // namespace
 
 std::string how_to_lengthen_steps(const Body& body, const Simulation& simulation, double frequency,
-                                  double wanted) {
-    std::vector<Candidate> left = candidates(body, simulation);
-    Causes causes{simulation.integrator, frequency,          body.damping,
-                  body.link_damping,     simulation.contact, simulation.pull};
+                                  const ToolStiffness& tools) {
+    const double wanted = simulation.shortest_step;
+    Causes causes{simulation.integrator, frequency, body.damping, body.link_damping, tools};
+    std::vector<Candidate> left = candidates(body, causes);
     double step = step_of(body, causes);
     std::string advice;
     while (step < wanted) {
@@ -116,7 +117,7 @@ std::string how_to_lengthen_steps(const Body& body, const Simulation& simulation
         best->leave_out(causes);
         step = longest;
         advice += fmt::format("{}{}: without that {:.0f} steps would do", advice.empty() ? "" : "; and ",
-                              best->remedy, std::ceil(simulation.frame / step));
+                              best->remedy, std::ceil(frame_seconds / step));
         left.erase(left.begin() + (best - left.data()));
     }
     if (step < wanted)

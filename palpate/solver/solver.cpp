@@ -3,7 +3,6 @@
 #include "palpate/base/error.h"
 #include "palpate/solver/check.h"
 #include "palpate/solver/machine.h"
-#include "palpate/solver/short_steps.h"
 #include "palpate/solver/stability.h"
 
 #include <fmt/format.h>
@@ -14,43 +13,26 @@
 namespace palpate {
 namespace {
 
-constexpr double most_steps_per_frame = 1000;
-
-void check_step(const Body& body, const Simulation& simulation, double frequency) {
-    const double touched = touched_frequency(body, frequency, simulation.contact, simulation.pull);
-    const auto integrator = simulation.integrator;
-    const double bound = longest_step(integrator, touched, body.damping, body.link_damping);
-    const std::string where = name_in_errors(body);
-    if (simulation.step > bound && !simulation.force)
-        throw Error(fmt::format("a step of {:.4g} s is above {}'s stability bound of {:.4g} s",
-                                simulation.step, name_of(integrator), bound),
-                    where, "use step = \"auto\" or a shorter one, or --force to see it blow up");
-    if (simulation.step <= 0 && !(bound > 0))
-        throw Error(fmt::format("{} is stable at no step without damping", name_of(integrator)), where,
-                    "choose verlet, which needs none");
-    const double automatic = automatic_step(integrator, touched, body.damping, body.link_damping);
-    const double step = simulation.step > 0 ? simulation.step : automatic;
-    const double wanted = simulation.frame / most_steps_per_frame;
-    if (step >= wanted) return;
-    throw Error(fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of {:.3g} s",
-                            name_of(integrator), simulation.frame / step, step, simulation.frame),
-                where,
-                step < automatic ? fmt::format("ask for longer steps: up to {:.3g} s are stable", bound)
-                                 : how_to_lengthen_steps(body, simulation, frequency, wanted));
-}
-
-Solver::MakeMachine machine_for(Backend backend, const gl::Context* context) {
+Solver::MakeMachine machine_for(Backend backend, const gl::Context* context, Team* team) {
     switch (backend) {
         case Backend::reference:
             return make_reference<float>;
         case Backend::cpu:
-            return [](const Body& body, const Simulation& simulation) { return make_cpu(body, simulation); };
+            return [=](const Body& body, const Simulation& simulation) {
+                return make_cpu(body, simulation, team);
+            };
         case Backend::feedback:
         case Backend::fragment:
         case Backend::compute:
+#if defined(PALPATE_OPENGL)
             return [=](const Body& body, const Simulation& simulation) {
                 return make_gpu(body, simulation, context);
             };
+#else
+            throw Error("this build of Palpate is without its part opengl",
+                        fmt::format("the backend {}", name_of(backend)),
+                        "use the backend cpu, or build with -D PALPATE_PARTS=all");
+#endif
     }
     throw Error("a backend that there is not", "the simulation", "choose one of " + all_names<Backend>());
 }
@@ -66,7 +48,7 @@ int steps_within(double seconds, double longest) {
 }
 
 Solver::Solver(const Body& body, const Simulation& simulation, double frequency, const MakeMachine& make)
-    : body_((check(body, simulation), body)),
+    : body_((palpate::check(body, simulation), body)),
       simulation_(simulation),
       scheme_(scheme(simulation.integrator)),
       frequency_(frequency),
@@ -75,17 +57,26 @@ Solver::Solver(const Body& body, const Simulation& simulation, double frequency,
 
 Solver::~Solver() = default;
 
+void Solver::check(double seconds, const Influences& influences) const {
+    palpate::check(seconds, influences, body_, simulation_);
+    steps_within(seconds, longest_step(influences));
+}
+
 Stats Solver::step(double seconds, const Influences& influences) {
-    check(seconds, influences, body_, simulation_);
+    check(seconds, influences);
+    machine_->remember();
+    before_ = {lag_, guides_};
+    return go_on(seconds, influences);
+}
+
+Stats Solver::go_on(double seconds, const Influences& influences) {
+    check(seconds, influences);
     Stats stats;
     stats.steps = steps_within(seconds, longest_step(influences));
     stats.step = seconds / stats.steps;
-
-    machine_->remember();
-    before_ = {lag_, guides_};
     Pass constant = make_pass(body_, simulation_);
     constant.wind = vec4(influences.wind, simulation_.air);
-    const Call call{scheme_,  simulation_, influences,  guides_.lead(influences.moves, seconds),
+    const Call call{scheme_,  simulation_, influences,  guides_.lead(influences, seconds),
                     constant, stats.step,  stats.steps, lag_};
     Findings found = machine_->run(call);
     shown_ = false;
@@ -141,7 +132,7 @@ State Solver::save() const {
 }
 
 void Solver::restore(const State& state) {
-    check(state, body_);
+    palpate::check(state, body_);
     before_.reset();
     guides_.stand(state);
     machine_->put(state);
@@ -158,18 +149,23 @@ void Solver::restore(const State& state) {
 std::size_t Solver::memory() const { return machine_->memory(); }
 
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
-                                    const gl::Context* context, double frequency) {
+                                    const gl::Context* context, double frequency, Team* team) {
     check(body, simulation);
     if (!(frequency > 0)) frequency = highest_frequency(body);
     if (!std::isfinite(frequency))
         throw Error("masses or springs that are not finite", name_in_errors(body),
                     "give all nodes a mass above zero, and all springs finite stiffness");
-    check_step(body, simulation, frequency);
-    return std::make_unique<Solver>(body, simulation, frequency, machine_for(simulation.backend, context));
+    auto solver =
+        std::make_unique<Solver>(body, simulation, frequency, machine_for(simulation.backend, context, team));
+    solver->longest_step();  // refuses what is never stable
+    return solver;
 }
 
 std::unique_ptr<Solver> make_exact_solver(const Body& body, const Simulation& simulation, double frequency) {
-    return std::make_unique<Solver>(body, simulation, frequency, make_reference<double>);
+    Simulation any_step = simulation;
+    any_step.force = true;
+    any_step.shortest_step = 0;
+    return std::make_unique<Solver>(body, any_step, frequency, make_reference<double>);
 }
 
 }  // namespace palpate

@@ -17,6 +17,7 @@ namespace gl {
 class Context;
 }
 class Machine;
+class Team;
 struct Scheme;
 
 /// What one call of Solver::step did.
@@ -51,10 +52,17 @@ class Solver final {
     /// Moves the body on by `seconds`, in equal steps no longer than the chosen one. Throws Error, and
     /// nothing has moved, where `seconds` is not above zero or would be more than a billion steps, more act
     /// than most_presses or most_drags, an influence is not finite or names a node that the body does not
-    /// have, or colliders have not one motion each.
+    /// have, colliders have not one motion each, or tools are so stiff that the step is above its bound, or
+    /// would be too short (LongestStep).
     Stats step(double seconds, const Influences& influences = {});
 
-    /// The longest step that step() would take with these, s.
+    /// The same, but undo() then puts back what was before the last call of step(): for a call in parts.
+    Stats go_on(double seconds, const Influences& influences = {});
+
+    /// Throws Error as step() does.
+    void check(double seconds, const Influences& influences) const;
+
+    /// The longest step that step() would take with these, s. Throws Error where it would refuse them.
     double longest_step(const Influences& influences = {}) const { return longest_.under(influences); }
 
     /// The highest frequency of the body's free motion, rad/s (stability.h).
@@ -108,12 +116,14 @@ class Solver final {
 };
 
 /// Throws Error if body or simulation hold what cannot be (check()), if a step above the stability bound is
-/// asked for without `force`, if the integrator has none without damping, if a frame would take more than
-/// 1,000 steps, or if there are more colliders than fit. A backend of the GPU works in `context`, which has
-/// to outlive the solver, or if there is none in one of its own; it throws Error if there is no OpenGL.
-/// `frequency`: the body's highest, if it is known; finding it takes longer than all the rest.
+/// asked for without `force`, if the integrator has none without damping, if steps would be shorter than
+/// Simulation::shortest_step, or if there are more colliders than fit. A backend of the GPU works in
+/// `context`, which has to outlive the solver, or if there is none in one of its own; it throws Error if
+/// there is no OpenGL. `frequency`: the body's highest, if it is known; finding it takes longer than all the
+/// rest. `team`: that the backend cpu works with, in place of one of its own; it has to outlive the solver.
 std::unique_ptr<Solver> make_solver(const Body& body, const Simulation& simulation,
-                                    const gl::Context* context = nullptr, double frequency = 0);
+                                    const gl::Context* context = nullptr, double frequency = 0,
+                                    Team* team = nullptr);
 
 /// The reference in double, which shows orders of convergence without rounding in the way. It takes any step;
 /// `frequency` is needed where it shall choose one.

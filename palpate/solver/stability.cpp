@@ -1,5 +1,6 @@
 #include "palpate/solver/stability.h"
 
+#include "palpate/solver/forces.h"
 #include "palpate/solver/scheme.h"
 
 #include <algorithm>
@@ -9,45 +10,6 @@
 
 namespace palpate {
 namespace {
-
-// y = M^(-1/2) K M^(-1/2) x about the rest shape, where a spring along the unit vector n resists by k n nᵀ.
-class RestStiffness {
- public:
-    explicit RestStiffness(const Body& body) : body_(body), springs_(table(body)) {
-        for (std::size_t i = 0; i < body.count(); ++i) {
-            root_.push_back(std::sqrt(double(body.inverse_mass[i])));
-            for (const Tie& tie : springs_.of(i)) along_.push_back(tie.to < 0 ? dvec3(0) : direction(i, tie));
-        }
-    }
-
-    void apply(const std::vector<dvec3>& x, std::vector<dvec3>& y) const {
-        const std::size_t width = std::size_t(springs_.width);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const dvec3 u = root_[i] * x[i];
-            dvec3 force(0);
-            for (std::size_t t = 0; t < width; ++t) {
-                const Tie& tie = springs_.ties[i * width + t];
-                if (tie.to < 0) continue;
-                const dvec3 n = along_[i * width + t];
-                const double k = double(tie.share) * tie.stiffness;
-                force += k * glm::dot(n, u - root_[std::size_t(tie.to)] * x[std::size_t(tie.to)]) * n;
-            }
-            y[i] = root_[i] * force;
-        }
-    }
-
- private:
-    dvec3 direction(std::size_t i, const Tie& tie) const {
-        const dvec3 along = dvec3(body_.positions[std::size_t(tie.to)]) - dvec3(body_.positions[i]);
-        const double length = glm::length(along);
-        return length > 0 ? along / length : dvec3(1, 0, 0);
-    }
-
-    const Body& body_;
-    Table springs_;
-    std::vector<dvec3> along_;
-    std::vector<double> root_;
-};
 
 // One step of x'' = -ω² x - rate · x', seen as (x, v), by the integrator's own stages.
 dvec2 one_step(const Scheme& scheme, double step, double frequency, double damping, double rate,
@@ -67,23 +29,26 @@ dvec2 one_step(const Scheme& scheme, double step, double frequency, double dampi
 }  // namespace
 
 double highest_frequency(const Body& body) {
-    check(body);
-    const RestStiffness stiffness(body);
+    const Forces terms(body);
+    const std::size_t count = body.count();
+    const std::vector<dvec3> rest(body.positions.begin(), body.positions.end());
+    std::vector<double> root;  // of each inverse mass
+    for (float inverse : body.inverse_mass) root.push_back(std::sqrt(double(inverse)));
     std::mt19937 random(1);  // the same start, and so the same answer, every time
     std::uniform_real_distribution<double> part(-1, 1);
-    std::vector<dvec3> x(body.count()), y(body.count());
+    std::vector<dvec3> x(count), displacement(count), y(count);
     for (dvec3& v : x) v = {part(random), part(random), part(random)};
 
+    // Power iteration on M^(-1/2) K M^(-1/2).
     double largest = 0;  // eigenvalue, rad²/s²
     for (int i = 0; i < 80; ++i) {
         double norm = 0;
         for (dvec3 v : x) norm += glm::dot(v, v);
         if (!(norm > 0)) break;
-        for (dvec3& v : x) v /= std::sqrt(norm);
-        stiffness.apply(x, y);
-        double quotient = 0;
-        for (std::size_t n = 0; n < x.size(); ++n) quotient += glm::dot(x[n], y[n]);
-        largest = quotient;
+        for (std::size_t n = 0; n < count; ++n) displacement[n] = root[n] * (x[n] /= std::sqrt(norm));
+        terms.stiffness_times(rest, displacement, y);
+        largest = 0;
+        for (std::size_t n = 0; n < count; ++n) largest += glm::dot(x[n], y[n] *= root[n]);
         std::swap(x, y);
     }
     return std::sqrt(largest);

@@ -119,7 +119,6 @@ TEST(Refusal, OfTooFewNodes) {
     }
     expect_refused("positions", [&] { inverted_cells(body, few); });
     expect_refused("positions", [&] { approximate_normals(body, few); });
-    expect_refused("positions", [&] { energy(body, {}); });
     Body gridless = body;
     gridless.springs = table(body);
     expect_refused("grid", [&] { embed(mesh, gridless); });

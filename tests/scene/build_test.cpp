@@ -419,14 +419,6 @@ TEST(Build, CollidersFromFiles) {
                  Error);
 }
 
-TEST(Build, TheStrengthOfToolsIsKnownBeforehand) {
-    const std::string path = "path = [[0, 0, 0, 0]]\n";
-    const Models made = make(cube + "[[tool]]\nradius = 0.01\nstiffness = 300\n" + path +
-                             "[[tool]]\nkind = \"drag\"\nstiffness = 70\n" + path);
-    EXPECT_NEAR(made.simulation.contact, 300 / (3.14159265f * 1e-4f), 1);
-    EXPECT_EQ(made.simulation.pull, 70);
-}
-
 // ---- what is made again ----
 
 // Where a surface is when its nodes have moved somehow: the same for embeddings that are the same.

@@ -143,11 +143,9 @@ Simulation simulation(const Body& body, const Acting& on, Integrator integrator,
             .integrator = integrator,
             .step = step,
             .force = true,
+            .shortest_step = 0,
             .air = on.air,
-            .colliders = on.colliders,
-            .contact = contact,
-            .pull = pull,
-            .frame = 1e-5};
+            .colliders = on.colliders};
 }
 
 double furthest_apart(const std::vector<dvec3>& a, const std::vector<dvec3>& b) {

@@ -198,22 +198,25 @@ TEST(Step, FollowsWhatActs) {
     const double frequency = highest_frequency(body);
     const Press soft{.stiffness = 50}, hard{.stiffness = 5000};
     const Drag drag{.stiffness = 200};
-    for (float expected : {0.0f, pressure_per_metre(hard) / 2}) {
-        const Simulation simulation{.contact = expected};
-        auto solver = make_solver(body, simulation);
-        for (const Influences& on :
-             {Influences{}, Influences{.presses = {&soft, 1}}, Influences{.presses = {&hard, 1}},
-              Influences{}, Influences{.drags = {&drag, 1}},
-              Influences{.presses = {&hard, 1}, .drags = {&drag, 1}}, Influences{.presses = {&soft, 1}}}) {
-            float contact = expected, pull = 0;
-            for (const Press& press : on.presses) contact = std::max(contact, pressure_per_metre(press));
-            for (const Drag& one : on.drags) pull += one.stiffness;
-            const double touched = touched_frequency(body, frequency, contact, pull);
-            for (int twice = 0; twice < 2; ++twice)
-                EXPECT_EQ(solver->longest_step(on),
-                          automatic_step(simulation.integrator, touched, body.damping, body.link_damping));
-        }
+    auto solver = make_solver(body, {});
+    for (const Influences& on :
+         {Influences{}, Influences{.presses = {&soft, 1}}, Influences{.presses = {&hard, 1}}, Influences{},
+          Influences{.drags = {&drag, 1}}, Influences{.presses = {&hard, 1}, .drags = {&drag, 1}},
+          Influences{.presses = {&soft, 1}}}) {
+        float contact = 0, pull = 0;
+        for (const Press& press : on.presses) contact += pressure_per_metre(press);
+        for (const Drag& one : on.drags) pull += one.stiffness;
+        const double touched = touched_frequency(body, frequency, contact, pull);
+        for (int twice = 0; twice < 2; ++twice)
+            EXPECT_EQ(solver->longest_step(on),
+                      automatic_step(Integrator::verlet, touched, body.damping, body.link_damping));
     }
+    // Pulls on one node add up; those on several do not.
+    const Drag twice[] = {{.node = 3, .stiffness = 200}, {.node = 3, .stiffness = 200}},
+               apart[] = {{.node = 3, .stiffness = 200}, {.node = 5, .stiffness = 200}};
+    const Drag strong{.stiffness = 400};
+    EXPECT_EQ(solver->longest_step({.drags = twice}), solver->longest_step({.drags = {&strong, 1}}));
+    EXPECT_EQ(solver->longest_step({.drags = apart}), solver->longest_step({.drags = {&drag, 1}}));
 }
 
 TEST(Cpu, TakesABodyOfNoNodes) {

@@ -75,8 +75,8 @@ std::vector<std::pair<std::string, Collider>> colliders() {
 // 1,000 steps of whatever length the solver chooses, with a collider that moves.
 void run(const std::string& name, const Body& body, Integrator integrator, const Collider& collider) {
     SCOPED_TRACE(name + ", " + std::string(name_of(integrator)));
-    auto solver =
-        make_solver(body, {.integrator = integrator, .air = 1.2f, .colliders = {collider}, .frame = 1e-6});
+    auto solver = make_solver(
+        body, {.integrator = integrator, .shortest_step = 0, .air = 1.2f, .colliders = {collider}});
     const double step = std::min(solver->longest_step(), 1e-3);  // nothing limits the step of an empty body
     const Motion motion{.velocity = {0.01f, 0.02f, 0}, .spin = {0, 0, 0.5f}};
     Motion at = motion;

@@ -144,9 +144,7 @@ TEST(Refusal, OfSimulationsThatCannotBe) {
     refused("integrator", {.integrator = Integrator(77), .step = 1e-4});
     refused("gravity", {.gravity = vec3(none)});
     refused("air", {.air = -1});
-    refused("contact", {.contact = none});
-    refused("pull", {.pull = -1});
-    for (double frame : {0.0, double(none)}) refused("frame", {.frame = frame});
+    for (double shortest : {-1.0, double(none)}) refused("shortest step", {.shortest_step = shortest});
     const auto collider = [&](const std::string& word, const Collider& one) {
         refused(word, {.colliders = {one}});
     };

@@ -5,6 +5,7 @@
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
+#include "palpate/solver/forces.h"
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 
@@ -256,7 +257,7 @@ TEST(State, SavedAndRestoredExactly) {
     for (const auto& [integrator, name] : names(Integrator{})) {
         Body body = lattice({4, 5, 3}, 0.01f, {.youngs_modulus = 2000, .density = 1000, .damping = 60});
         pin(body, std::vector<int>{0, 1});
-        const Simulation simulation{.integrator = integrator, .frame = 1e-3};
+        const Simulation simulation{.integrator = integrator, .shortest_step = 1e-6};
         auto solver = make_solver(body, simulation);
         solver->step(0.011);
         const State kept = solver->save();

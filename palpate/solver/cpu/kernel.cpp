@@ -195,6 +195,7 @@ struct GridNode : Eyes<AnyPass> {
     FN Pack share(int l) const { return times_share(l, one_over_whole(l)); }
     FN Pack neighbour(int l) const { return select(share(l) > 0.0f, Pack(1.0f), Pack(0.0f)); }
     FN Pack stiffness(int l) const { return stronger(l, pass.spring[l].stiffness); }
+    FN Pack tension(int l) const { return stronger(l, pass.spring[l].tension); }
     FN Pack longest(int l) const { return pass.spring[l].longest; }
 
     // With Newton's step for the root and the share's unit worked into the constants.

@@ -1,86 +1,22 @@
 #include "palpate/solver/machine.h"
+#include "palpate/solver/reference/node.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace palpate {
 namespace {
 
-// What all nodes look at while a pass runs.
-struct Surroundings {
-    const Body& body;
-    Table springs;
-    std::vector<vec3> corners;                 // of polygons
-    std::vector<const DistanceField*> fields;  // of closed meshes
-    std::vector<int> dragged;                  // the node of each drag
-};
-
-template <class Real>
-struct NodeStates {
-    std::vector<glm::vec<3, Real>> positions, velocities;
-};
-
-// A node with its backend's eyes: how it sees its neighbours. The physics is node.inl's.
-template <class Number>
-struct ReferenceNode {
-    using Real = Number;
-    using Real3 = glm::vec<3, Real>;
-
-    const Surroundings& world;
-    const Pass& pass;
-    const NodeStates<Real>& now;
-    int id;
-    const Tie* ties;  // this node's springs
-    Real outside_area, outside_cover;
-
-    Real3 toward(Real3 p, int l) const { return now.positions[std::size_t(ties[l].to)] - p; }
-    Real3 passing(Real3 v, int l) const { return now.velocities[std::size_t(ties[l].to)] - v; }
-    Real neighbour(int l) const { return ties[l].to != id ? Real(1) : Real(0); }
-    Real share(int l) const { return ties[l].share; }
-    Real stiffness(int l) const { return ties[l].stiffness; }
-    Real tension(int l) const { return ties[l].stiffness * ties[l].rest; }
-    Real longest(int l) const { return torn_at(ties[l].rest, world.body); }
-    Real3 origin() const { return Real3(0); }
-    Real area() const { return outside_area; }
-    Real cover() const { return outside_cover; }
-    Real held(int i) const { return world.dragged[std::size_t(i)] == id ? Real(1) : Real(0); }
-    Real3 corner(int i) const { return Real3(world.corners[std::size_t(i)]); }
-    Real distance_at(int i, Real3 p) const { return world.fields[std::size_t(i)]->at(vec3(p)); }
-    Real3 uphill_at(int i, Real3 p) const { return Real3(world.fields[std::size_t(i)]->uphill(vec3(p))); }
-
-    static Real max(Real a, Real b) { return a > b ? a : b; }
-    static Real min(Real a, Real b) { return a < b ? a : b; }
-    static Real inversesqrt(Real a) { return 1 / std::sqrt(a); }
-    static bool any_node(bool c) { return c; }
-    static Real select(bool c, Real a, Real b) { return c ? a : b; }
-    static Real3 select(bool c, Real3 a, Real3 b) { return c ? a : b; }
-
-#define FN [[gnu::always_inline]]  // GCC leaves the longer ones out, which costs half the speed
-#define ASIDE
-#define UNROLL
-#define LINKS pass.links
-#include "palpate/solver/node.inl"
-#include "palpate/solver/obstacles.inl"
-#undef LINKS
-#undef UNROLL
-#undef ASIDE
-#undef FN
-};
+using namespace reference;
 
 template <class Real>
 class Reference final : public Machine {
-    using At = ReferenceNode<Real>;
+    using At = SeeingNode<Real>;
     using Node = typename At::Node;
     using Real3 = typename At::Real3;
 
  public:
     Reference(const Body& body, const Simulation& simulation)
-        : body_(body),
-          world_{body_, table(body), polygon_corners(simulation), distance_fields(simulation), {}},
-          quiet_(make_pass(body, simulation)) {
-        // Where there is no spring its end is the node itself, and it pulls at nothing.
-        for (std::size_t t = 0; t < world_.springs.ties.size(); ++t)
-            if (int& to = world_.springs.ties[t].to; to < 0) to = int(t) / world_.springs.width;
+        : body_(body), around_(body_, simulation), quiet_(make_pass(body, simulation)) {
         NodeStates<Real>& begin = states_[current];
         for (vec3 p : body.positions) begin.positions.push_back(Real3(p));
         begin.velocities.assign(body.count(), Real3(0));
@@ -91,8 +27,8 @@ class Reference final : public Machine {
     Findings run(const Call& call) override {
         Findings found{.by_presses = std::vector<dvec3>(call.influences.presses.size()),
                        .by_drags = std::vector<dvec3>(call.influences.drags.size())};
-        world_.dragged.clear();
-        for (const Drag& drag : call.influences.drags) world_.dragged.push_back(drag.node);
+        around_.dragged.clear();
+        for (const Drag& drag : call.influences.drags) around_.dragged.push_back(drag.node);
         for (const Guide& guide : call.guides)
             states_[current].velocities[std::size_t(guide.node)] = Real3(guide.velocity);
         call.for_each_pass([&](const Pass& pass, const Turn& turn) {
@@ -145,7 +81,7 @@ class Reference final : public Machine {
     }
 
     std::size_t memory() const override {
-        std::size_t bytes = world_.springs.ties.size() * sizeof(Tie);
+        std::size_t bytes = around_.springs.ties.size() * sizeof(Tie);
         for (const NodeStates<Real>& state : states_) bytes += 2 * state.positions.size() * sizeof(Real3);
         return bytes;
     }
@@ -177,23 +113,15 @@ class Reference final : public Machine {
                 found.by_presses[t] +=
                     turn.impulse * dvec3(see(i, at, pass).tip_force(at.positions[i], int(t)));
         for (std::size_t d = 0; d < found.by_drags.size(); ++d) {
-            const std::size_t i = std::size_t(world_.dragged[d]);
+            const std::size_t i = std::size_t(around_.dragged[d]);
             found.by_drags[d] += turn.impulse * dvec3(see(i, at, pass).drag_force(at.positions[i], int(d)));
         }
     }
 
     At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass) const {
-        return {world_,
-                pass,
-                at,
-                int(i),
-                world_.springs.ties.data() + i * std::size_t(world_.springs.width),
-                Real(body_.area[i]),
-                Real(body_.cover[i])};
+        return reference::see(around_, pass, at, i);
     }
-    Node load(const NodeStates<Real>& from, std::size_t i) const {
-        return {from.positions[i], from.velocities[i], Real(body_.inverse_mass[i])};
-    }
+    Node load(const NodeStates<Real>& from, std::size_t i) const { return reference::load(around_, from, i); }
     static void store(const Node& node, NodeStates<Real>& into, std::size_t i) {
         into.positions[i] = node.position;
         into.velocities[i] = node.velocity;
@@ -207,7 +135,7 @@ class Reference final : public Machine {
     }
 
     const Body& body_;
-    Surroundings world_;
+    Surroundings around_;
     const Pass quiet_;            // nothing touches or moves it
     NodeStates<Real> states_[4];  // Where
     NodeStates<Real> before_;     // the call

@@ -1,9 +1,9 @@
 // touch.comp: the impulses that tips and drags give to the nodes in one pass. Each invocation adds up those that a tip
 // gives to every so manieth node of the outside, which alone it touches; the host adds up the sums.
 
-layout(local_size_x = 64) in;
-layout(binding = 9) uniform isamplerBuffer rim;  // the slots of the nodes of the outside
-layout(std430, binding = 0) buffer Impulses { vec4 impulses[]; };  // N s: by tips and then drags, of each invocation
+layout(local_size_x = group_size) in;
+layout(binding = rim_unit) uniform isamplerBuffer rim;  // the slots of the nodes of the outside
+layout(std430, binding = impulses_buffer) buffer Impulses { vec4 impulses[]; };  // N s: by tips and then drags, of each invocation
 uniform int count;      // of the nodes of the outside
 uniform float seconds;  // over which the forces act
 

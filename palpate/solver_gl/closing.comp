@@ -1,12 +1,12 @@
 // closing.comp: what there is to know of the nodes after a call: where they are, for whoever draws them, and what the host
 // asks. Each invocation takes every so manieth node, so that few of them meet at the atomics.
 
-layout(local_size_x = 64) in;
-layout(binding = 8) uniform isamplerBuffer slots;  // of the nodes
-layout(binding = 9) uniform Floats before;         // their positions before the last step
-layout(std430, binding = 0) writeonly buffer Positions { vec4 shown_positions[]; };
-layout(std430, binding = 1) writeonly buffer Normals { vec4 shown_normals[]; };
-layout(std430, binding = 2) buffer Findings {
+layout(local_size_x = group_size) in;
+layout(binding = slots_unit) uniform isamplerBuffer slots;  // of the nodes
+layout(binding = before_unit) uniform Floats before;         // their positions before the last step
+layout(std430, binding = shown_positions_buffer) writeonly buffer Positions { vec4 shown_positions[]; };
+layout(std430, binding = shown_normals_buffer) writeonly buffer Normals { vec4 shown_normals[]; };
+layout(std430, binding = findings_buffer) buffer Findings {
     uint diverged, speed, move;  // the two as floats' bits, which are in order where they are not negative
     int low[3], high[3];     // of the box around all, ordered()
 };

@@ -1,11 +1,11 @@
 #include "palpate/gl/context.h"
 #include "palpate/gl/program.h"
 #include "palpate/gl/visit.h"
-#include "palpate/solver/gpu/answers.h"
-#include "palpate/solver/gpu/pipeline.h"
-#include "palpate/solver/gpu/placement.h"
-#include "palpate/solver/gpu/world.h"
 #include "palpate/solver/machine.h"
+#include "palpate/solver_gl/answers.h"
+#include "palpate/solver_gl/body_on_gpu.h"
+#include "palpate/solver_gl/pipeline.h"
+#include "palpate/solver_gl/placement.h"
 
 #include <algorithm>
 #include <optional>
@@ -22,12 +22,11 @@ const char* touch_comp =
 #include "embedded/touch.comp.h"
     ;
 
-constexpr int group = 64;          // as in the compute shaders
 constexpr int nodes_each = 16;     // of one invocation of closing.comp
 constexpr int most_adders = 1024;  // invocations of touch.comp
 constexpr int row = 1024;          // of a flat texture
 
-int groups(int invocations) { return (invocations + group - 1) / group; }
+int groups(int invocations) { return (invocations + group_size - 1) / group_size; }
 
 std::unique_ptr<Pipeline> make_pipeline(Backend backend, const Text& text) {
     switch (backend) {
@@ -60,19 +59,18 @@ class Gpu final : public Machine {
           scheme_(scheme(simulation.integrator)),
           placement_(body_),
           width_(simulation.backend == Backend::fragment ? row : 0),
-          world_(body_, simulation_, placement_),
+          on_gpu_(body_, simulation_, placement_),
           tiled_(simulation.backend == Backend::compute && tiles.value_or(!context_.software())),
           alone_(make_pipeline(simulation.backend, text(false, tiled_))),
           closing_(compute_program(text(false, false), "closing.comp", closing_comp)),
           quiet_(make_pass(body_, simulation_)),
           shown_positions_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           shown_normals_(gl::Buffer::room(body_.count() * sizeof(vec4))),
-          adders_(std::clamp(groups(int(placement_.rim.size())) * group, group, most_adders)),
+          adders_(std::clamp(groups(int(placement_.rim.size())) * group_size, group_size, most_adders)),
           answers_(context_, adders_) {
         for (Where where : {current, between, further, sum})
             if (needs(scheme_, where) || (where == further && scheme_.stages.size() > 1))
                 states_[where].emplace(make_state());
-        if (simulation.contact > 0 || simulation.pull > 0) touched();  // before it has to be quick
         if (adds_up()) next_sum_.emplace(make_state());
         before_.emplace(make_state());
         put({std::vector<dvec3>(body_.positions.begin(), body_.positions.end()),
@@ -85,17 +83,17 @@ class Gpu final : public Machine {
         context_.make_current();
         const gl::Visit visit;
         const Influences& influences = call.influences;
-        world_.lead(call.guides);
+        on_gpu_.lead(call.guides);
         const Touched* tools = influences.presses.empty() && influences.drags.empty() ? nullptr : &touched();
         Pipeline& pipeline = tools ? *tools->pipeline : *alone_;
         if (tools) answers_.clear_impulses();
-        world_.bind();
+        on_gpu_.bind();
         Call placed = call;
         for (std::size_t d = 0; d < influences.drags.size(); ++d)
             placed.constant.dragged[d / 4][int(d % 4)] =
                 placement_.slot[std::size_t(influences.drags[d].node)];
         placed.for_each_pass([&](const Pass& pass, const Turn& turn) {
-            world_.upload(pass);
+            on_gpu_.upload(pass);
             look_at(*states_[turn.at]);
             if (tools && turn.impulse > 0) add_impulses(*tools, turn.impulse);
             run(pipeline, turn);
@@ -110,7 +108,7 @@ class Gpu final : public Machine {
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const auto slot = std::size_t(placement_.slot[i]);
             positions[slot] = vec4(vec3(state.positions[i]), body_.inverse_mass[i]);
-            velocities[slot] = vec4(vec3(state.velocities[i]), float(world_.guide_of(i)));
+            velocities[slot] = vec4(vec3(state.velocities[i]), float(on_gpu_.guide_of(i)));
         }
         for (auto& one :
              states_) {  // all of them, because what lies between the nodes has to be there in each
@@ -118,7 +116,7 @@ class Gpu final : public Machine {
             one->positions.put(std::as_bytes(std::span(positions)));
             one->velocities.put(std::as_bytes(std::span(velocities)));
         }
-        world_.bind();
+        on_gpu_.bind();
         close({});
     }
 
@@ -145,7 +143,7 @@ class Gpu final : public Machine {
         const gl::Visit visit;
         states_[current]->positions.copy(before_->positions);
         states_[current]->velocities.copy(before_->velocities);
-        world_.bind();
+        on_gpu_.bind();
         close({});
     }
 
@@ -154,8 +152,8 @@ class Gpu final : public Machine {
         const gl::Visit visit;
         Pass pass = quiet_;
         pass.kick = float(kick);
-        world_.bind();
-        world_.upload(pass);
+        on_gpu_.bind();
+        on_gpu_.upload(pass);
         const Moving &at = *states_[current],
                      &free = *states_[scheme_.stages.size() == 1 ? between : further];
         look_at(at);
@@ -181,7 +179,7 @@ class Gpu final : public Machine {
     }
 
     std::size_t memory() const override {
-        std::size_t bytes = world_.bytes();
+        std::size_t bytes = on_gpu_.bytes();
         auto add = [&](const Moving& moving) {
             bytes += moving.positions.bytes() + moving.velocities.bytes();
         };
@@ -218,8 +216,8 @@ class Gpu final : public Machine {
     // ---- a pass ----
 
     void look_at(const Moving& moving) const {
-        moving.positions.bind(0);
-        moving.velocities.bind(1);
+        moving.positions.bind(positions_unit);
+        moving.velocities.bind(velocities_unit);
     }
 
     // No pass writes what it reads: the last of several writes `further`, which then is the current state.
@@ -245,9 +243,9 @@ class Gpu final : public Machine {
         tools.impulses.use();
         tools.impulses.set("seconds", float(seconds));
         tools.impulses.set("count", int(placement_.rim.size()));
-        world_.bind_rim(9);
+        on_gpu_.bind_rim();
         answers_.bind_impulses();
-        glDispatchCompute(GLuint(adders_ / group), 1, 1);
+        glDispatchCompute(GLuint(adders_ / group_size), 1, 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     }
 
@@ -255,12 +253,12 @@ class Gpu final : public Machine {
 
     Findings close(const Influences& influences) {
         look_at(*states_[current]);
-        before_last_step().bind(9);
-        world_.upload(quiet_);
+        before_last_step().bind(before_unit);
+        on_gpu_.upload(quiet_);
         closing_.use();
         closing_.set("count", int(body_.count()));
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, shown_positions_.name());
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, shown_normals_.name());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, shown_positions_buffer, shown_positions_.name());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, shown_normals_buffer, shown_normals_.name());
         answers_.bind_findings();
         const int each = (int(body_.count()) + nodes_each - 1) / nodes_each;
         if (each > 0) glDispatchCompute(GLuint(groups(each)), 1, 1);
@@ -286,7 +284,7 @@ class Gpu final : public Machine {
     const Scheme& scheme_;
     const Placement placement_;
     const int width_;  // of flat textures; 0: buffers
-    World world_;
+    BodyOnGpu on_gpu_;
     const bool tiled_;
     std::unique_ptr<Pipeline> alone_;  // with no tools
     gl::Program closing_;

@@ -1,15 +1,15 @@
 // eyes.glsl: what node.inl asks of a backend, for a node in the GPU's memory. After pass.inl.
 
-layout(std140, binding = 0) uniform Uniforms { Pass pass; };
+layout(std140, binding = pass_block) uniform Uniforms { Pass pass; };
 
-layout(binding = 0) uniform Floats positions;   // m; w: 1/kg, below 0 where there is no node
-layout(binding = 1) uniform Floats velocities;  // m/s; w: number of a guide, below 0 for none
-layout(binding = 2) uniform usamplerBuffer traits;   // of a slot: two words of shares; area and cover, as floats' bits
-layout(binding = 3) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; or strengths
-layout(binding = 4) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
-layout(binding = 5) uniform samplerBuffer corners;   // of polygons
-layout(binding = 6) uniform samplerBuffer distances; // of fields, one after the other
-layout(binding = 7) uniform samplerBuffer grids;     // of fields, in pairs: origin and spacing; dims and first distance
+layout(binding = positions_unit) uniform Floats positions;   // m; w: 1/kg, below 0 where there is no node
+layout(binding = velocities_unit) uniform Floats velocities;  // m/s; w: number of a guide, below 0 for none
+layout(binding = traits_unit) uniform usamplerBuffer traits;   // of a slot: two words of shares; area and cover, as floats' bits
+layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; or strengths
+layout(binding = guides_unit) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
+layout(binding = corners_unit) uniform samplerBuffer corners;   // of polygons
+layout(binding = distances_unit) uniform samplerBuffer distances; // of fields, one after the other
+layout(binding = grids_unit) uniform samplerBuffer grids;     // of fields, in pairs: origin and spacing; dims and first distance
 
 int id;       // this node's slot
 uvec4 trait;  // its own

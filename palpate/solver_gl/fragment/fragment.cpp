@@ -1,5 +1,5 @@
 #include "palpate/gl/program.h"
-#include "palpate/solver/gpu/pipeline.h"
+#include "palpate/solver_gl/pipeline.h"
 
 #include <map>
 
@@ -25,11 +25,11 @@ class Fragment final : public Pipeline {
     explicit Fragment(const Text& text) : program_(fragment_program(text)), sums_(text.sums) {}
 
     void pass(const Fields& fields) override {
-        fields.start.positions.bind(10);
-        fields.start.velocities.bind(11);
-        fields.was.bind(12);
-        fields.sum.positions.bind(13);
-        fields.sum.velocities.bind(14);
+        fields.start.positions.bind(start_positions_unit);
+        fields.start.velocities.bind(start_velocities_unit);
+        fields.was.bind(was_positions_unit);
+        fields.sum.positions.bind(sum_positions_unit);
+        fields.sum.velocities.bind(sum_velocities_unit);
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target(fields).name());
         glViewport(0, 0, fields.next.positions.width(), fields.next.positions.height());
         program_.use();

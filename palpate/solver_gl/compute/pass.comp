@@ -4,18 +4,18 @@
 #ifdef TILE
 layout(local_size_x = TILE_X, local_size_y = TILE_Y, local_size_z = TILE_Z) in;
 #else
-layout(local_size_x = 64) in;
+layout(local_size_x = group_size) in;
 #endif
-layout(binding = 10) uniform samplerBuffer start_positions;
-layout(binding = 11) uniform samplerBuffer start_velocities;
-layout(binding = 12) uniform samplerBuffer was_positions;
-layout(std430, binding = 0) writeonly buffer NextPositions { vec4 next_positions[]; };
-layout(std430, binding = 1) writeonly buffer NextVelocities { vec4 next_velocities[]; };
+layout(binding = start_positions_unit) uniform samplerBuffer start_positions;
+layout(binding = start_velocities_unit) uniform samplerBuffer start_velocities;
+layout(binding = was_positions_unit) uniform samplerBuffer was_positions;
+layout(std430, binding = next_positions_buffer) writeonly buffer NextPositions { vec4 next_positions[]; };
+layout(std430, binding = next_velocities_buffer) writeonly buffer NextVelocities { vec4 next_velocities[]; };
 #ifdef SUMS
-layout(binding = 13) uniform samplerBuffer sum_positions;
-layout(binding = 14) uniform samplerBuffer sum_velocities;
-layout(std430, binding = 2) writeonly buffer NextSumPositions { vec4 next_sum_positions[]; };
-layout(std430, binding = 3) writeonly buffer NextSumVelocities { vec4 next_sum_velocities[]; };
+layout(binding = sum_positions_unit) uniform samplerBuffer sum_positions;
+layout(binding = sum_velocities_unit) uniform samplerBuffer sum_velocities;
+layout(std430, binding = next_sum_positions_buffer) writeonly buffer NextSumPositions { vec4 next_sum_positions[]; };
+layout(std430, binding = next_sum_velocities_buffer) writeonly buffer NextSumVelocities { vec4 next_sum_velocities[]; };
 #endif
 
 void move(int slot) {

@@ -7,6 +7,8 @@
 
 namespace palpate::gpu {
 
+#include "palpate/solver_gl/bindings.inl"
+
 /// The moving state at one moment; eyes.glsl says what it holds.
 struct Moving {
     gl::Field positions, velocities;

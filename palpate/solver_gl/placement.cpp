@@ -1,4 +1,4 @@
-#include "palpate/solver/gpu/placement.h"
+#include "palpate/solver_gl/placement.h"
 
 #include <algorithm>
 #include <numeric>

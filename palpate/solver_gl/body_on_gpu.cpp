@@ -1,7 +1,7 @@
-#include "palpate/solver/gpu/world.h"
+#include "palpate/solver_gl/body_on_gpu.h"
 
-#include "palpate/solver/gpu/tiles.h"
 #include "palpate/solver/schedule.h"
+#include "palpate/solver_gl/tiles.h"
 
 #include <fmt/format.h>
 
@@ -21,6 +21,9 @@ const char* node_inl =
     ;
 const char* obstacles_inl =
 #include "embedded/obstacles.inl.h"
+    ;
+const char* bindings_inl =
+#include "embedded/bindings.inl.h"
     ;
 const char* prelude_glsl =
 #include "embedded/prelude.glsl.h"
@@ -147,7 +150,7 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     define(sums, "SUMS");
     define(count_guides(body) > 0, "GUIDES");
     define(true, fmt::format("FAN {}", body.fan));
-    define(!(body.link_damping > 0), "DASHPOTS false");
+    define(!(body.link_damping > 0), "LINK_DAMPING false");
     define(!(simulation.air > 0), "WIND false");
     define(simulation.colliders.empty(), "OBSTACLES 0");
     define(!touched, "TIPS 0");
@@ -160,13 +163,14 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
         text += gpu::text(cut, body, placement);
         made.tiles = cut.groups;
     }
-    for (const char* part : {prelude_glsl, pass_inl, eyes_glsl, node_inl, obstacles_inl, turn_glsl})
+    for (const char* part :
+         {bindings_inl, prelude_glsl, pass_inl, eyes_glsl, node_inl, obstacles_inl, turn_glsl})
         text += part;
     made.physics = std::move(text);
     return made;
 }
 
-World::World(const Body& body, const Simulation& simulation, const Placement& placement)
+BodyOnGpu::BodyOnGpu(const Body& body, const Simulation& simulation, const Placement& placement)
     : traits_(field(GL_RGBA32UI, traits_of(body, placement))),
       ties_(ties_of(body, placement)),
       slots_(field(GL_R32I, placement.slot)),
@@ -178,15 +182,19 @@ World::World(const Body& body, const Simulation& simulation, const Placement& pl
       guides_(GL_RGBA32F, sizeof(vec4), 2 * count_guides(body), 0),
       uniforms_(gl::Buffer::room(sizeof(Pass))) {}
 
-void World::bind() const {
-    const gl::Field* fields[] = {&traits_, &ties_, &guides_, &corners_, &distances_, &grids_, &slots_};
-    GLuint unit = 2;  // after positions and velocities
-    for (const gl::Field* one : fields) one->bind(unit++);
-    for (unit = 0; unit < 15; ++unit) glBindSampler(unit, 0);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_.name());
+void BodyOnGpu::bind() const {
+    traits_.bind(traits_unit);
+    ties_.bind(ties_unit);
+    guides_.bind(guides_unit);
+    corners_.bind(corners_unit);
+    distances_.bind(distances_unit);
+    grids_.bind(grids_unit);
+    slots_.bind(slots_unit);
+    for (GLuint unit = 0; unit < units; ++unit) glBindSampler(unit, 0);
+    glBindBufferBase(GL_UNIFORM_BUFFER, pass_block, uniforms_.name());
 }
 
-void World::upload(const Pass& pass) const {
+void BodyOnGpu::upload(const Pass& pass) const {
     // Mostly only the numbers at the front have changed, or nothing.
     constexpr std::size_t front = offsetof(Pass, tip);
     const auto* bytes = reinterpret_cast<const std::byte*>(&pass);
@@ -198,7 +206,7 @@ void World::upload(const Pass& pass) const {
     pass_ = pass;
 }
 
-void World::lead(std::span<const Guide> guides) {
+void BodyOnGpu::lead(std::span<const Guide> guides) {
     std::vector<vec4> values;
     for (const Guide& guide : guides) {
         values.emplace_back(vec3(guide.velocity), 0);
@@ -207,7 +215,7 @@ void World::lead(std::span<const Guide> guides) {
     guides_.put(std::as_bytes(std::span(values)));
 }
 
-std::size_t World::bytes() const {
+std::size_t BodyOnGpu::bytes() const {
     return traits_.bytes() + ties_.bytes() + slots_.bytes() + rim_.bytes() + guides_.bytes();
 }
 

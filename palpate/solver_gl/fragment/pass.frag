@@ -1,14 +1,14 @@
 // pass.frag: one pass over nodes laid flat in textures (2005, section 3.1; the implicit connections of the papers it cites).
 // A node is a fragment, its slot the place of that in the texture; its neighbours are as many slots away for all.
 
-layout(binding = 10) uniform sampler2D start_positions;
-layout(binding = 11) uniform sampler2D start_velocities;
-layout(binding = 12) uniform sampler2D was_positions;
+layout(binding = start_positions_unit) uniform sampler2D start_positions;
+layout(binding = start_velocities_unit) uniform sampler2D start_velocities;
+layout(binding = was_positions_unit) uniform sampler2D was_positions;
 layout(location = 0) out vec4 next_position;
 layout(location = 1) out vec4 next_velocity;
 #ifdef SUMS
-layout(binding = 13) uniform sampler2D sum_positions;
-layout(binding = 14) uniform sampler2D sum_velocities;
+layout(binding = sum_positions_unit) uniform sampler2D sum_positions;
+layout(binding = sum_velocities_unit) uniform sampler2D sum_velocities;
 layout(location = 2) out vec4 next_sum_position;
 layout(location = 3) out vec4 next_sum_velocity;
 #endif

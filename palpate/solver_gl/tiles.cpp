@@ -1,4 +1,4 @@
-#include "palpate/solver/gpu/tiles.h"
+#include "palpate/solver_gl/tiles.h"
 
 #include <fmt/format.h>
 

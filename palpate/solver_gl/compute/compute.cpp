@@ -1,5 +1,5 @@
 #include "palpate/gl/program.h"
-#include "palpate/solver/gpu/pipeline.h"
+#include "palpate/solver_gl/pipeline.h"
 
 namespace palpate::gpu {
 namespace {
@@ -8,15 +8,13 @@ const char* pass_comp =
 #include "embedded/pass.comp.h"
     ;
 
-constexpr int group = 64;  // as in pass.comp, where there are no tiles
-
 gl::Program compute_program(const Text& text) {
     const std::string whole = text.physics + pass_comp;
     return gl::Program({{GL_COMPUTE_SHADER, "pass.comp", whole}});
 }
 
 ivec3 groups(const Text& text) {
-    return text.tiles.x > 0 ? text.tiles : ivec3((text.slots + group - 1) / group, 1, 1);
+    return text.tiles.x > 0 ? text.tiles : ivec3((text.slots + group_size - 1) / group_size, 1, 1);
 }
 
 class Compute final : public Pipeline {
@@ -25,16 +23,16 @@ class Compute final : public Pipeline {
         : program_(compute_program(text)), sums_(text.sums), groups_(groups(text)) {}
 
     void pass(const Fields& fields) override {
-        fields.start.positions.bind(10);
-        fields.start.velocities.bind(11);
-        fields.was.bind(12);
+        fields.start.positions.bind(start_positions_unit);
+        fields.start.velocities.bind(start_velocities_unit);
+        fields.was.bind(was_positions_unit);
         if (sums_) {
-            fields.sum.positions.bind(13);
-            fields.sum.velocities.bind(14);
+            fields.sum.positions.bind(sum_positions_unit);
+            fields.sum.velocities.bind(sum_velocities_unit);
         }
         const GLuint outputs[] = {fields.next.positions.buffer(), fields.next.velocities.buffer(),
                                   fields.next_sum.positions.buffer(), fields.next_sum.velocities.buffer()};
-        glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, sums_ ? 4 : 2, outputs);
+        glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, next_positions_buffer, sums_ ? 4 : 2, outputs);
         program_.use();
         glDispatchCompute(GLuint(groups_.x), GLuint(groups_.y), GLuint(groups_.z));
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |

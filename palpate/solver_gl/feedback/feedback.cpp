@@ -1,5 +1,5 @@
 #include "palpate/gl/program.h"
-#include "palpate/solver/gpu/pipeline.h"
+#include "palpate/solver_gl/pipeline.h"
 
 namespace palpate::gpu {
 namespace {

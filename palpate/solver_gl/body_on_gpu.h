@@ -1,9 +1,9 @@
 #pragma once
 #include "palpate/gl/field.h"
-#include "palpate/solver/gpu/pipeline.h"
-#include "palpate/solver/gpu/placement.h"
 #include "palpate/solver/guides.h"
 #include "palpate/solver/pass.h"
+#include "palpate/solver_gl/pipeline.h"
+#include "palpate/solver_gl/placement.h"
 
 #include <optional>
 #include <span>
@@ -17,15 +17,15 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
              bool touched, bool tiled);
 
 /// All that nodes look at besides the moving state: what they are made of, the pass, guides and obstacles.
-class World {
+class BodyOnGpu {
  public:
-    World(const Body& body, const Simulation& simulation, const Placement& placement);
+    BodyOnGpu(const Body& body, const Simulation& simulation, const Placement& placement);
 
     /// Binds it for the shaders of this body; their samplers, and the block of the pass.
     void bind() const;
 
     /// The nodes of the outside.
-    void bind_rim(GLuint unit) const { rim_.bind(unit); }
+    void bind_rim() const { rim_.bind(rim_unit); }
 
     /// Makes it the pass of what runs next.
     void upload(const Pass& pass) const;

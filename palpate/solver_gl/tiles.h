@@ -1,6 +1,6 @@
 #pragma once
 #include "palpate/base/vectors.h"
-#include "palpate/solver/gpu/placement.h"
+#include "palpate/solver_gl/placement.h"
 
 #include <string>
 

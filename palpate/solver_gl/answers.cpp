@@ -1,4 +1,4 @@
-#include "palpate/solver/gpu/answers.h"
+#include "palpate/solver_gl/answers.h"
 
 #include "palpate/base/error.h"
 #include "palpate/solver/pass.h"
@@ -50,14 +50,16 @@ void Answers::reset_findings() const {
 
 void Answers::bind_findings() const {
     reset_findings();
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, findings_.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, findings_buffer, findings_.name());
 }
 
 void Answers::clear_impulses() const {
     glClearNamedBufferData(impulses_.name(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
 }
 
-void Answers::bind_impulses() const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, impulses_.name()); }
+void Answers::bind_impulses() const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, impulses_buffer, impulses_.name());
+}
 
 void Answers::wait_for_gpu() const {
     glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);

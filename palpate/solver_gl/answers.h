@@ -2,6 +2,7 @@
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
 #include "palpate/solver/machine.h"
+#include "palpate/solver_gl/pipeline.h"
 
 namespace palpate::gpu {
 

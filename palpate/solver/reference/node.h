@@ -1,0 +1,99 @@
+#pragma once
+#include "palpate/solver/pass.h"
+
+#include <cmath>
+#include <vector>
+
+// The physics of one node, one number at a time: of the reference, and of what asks a body for its forces.
+
+namespace palpate::reference {
+
+/// What all nodes look at while a pass runs.
+struct Surroundings {
+    const Body& body;
+    Table springs;  // where there is none its end is the node itself, and it pulls at nothing
+    std::vector<vec3> corners = {};                 // of polygons
+    std::vector<const DistanceField*> fields = {};  // of closed meshes
+    std::vector<int> dragged = {};                  // the node of each drag
+
+    explicit Surroundings(const Body& of) : body(of), springs(table(of)) {
+        for (std::size_t t = 0; t < springs.ties.size(); ++t)
+            if (int& to = springs.ties[t].to; to < 0) to = int(t) / springs.width;
+    }
+    Surroundings(const Body& of, const Simulation& simulation) : Surroundings(of) {
+        corners = polygon_corners(simulation);
+        fields = distance_fields(simulation);
+    }
+};
+
+template <class Real>
+struct NodeStates {
+    std::vector<glm::vec<3, Real>> positions, velocities;
+};
+
+/// A node with its backend's eyes: how it sees its neighbours. The physics is node.inl's.
+template <class Number>
+struct SeeingNode {
+    using Real = Number;
+    using Real3 = glm::vec<3, Real>;
+
+    const Surroundings& world;
+    const Pass& pass;
+    const NodeStates<Real>& now;
+    int id;
+    const Tie* ties;  // this node's springs
+    Real outside_area, outside_cover;
+
+    Real3 toward(Real3 p, int l) const { return now.positions[std::size_t(ties[l].to)] - p; }
+    Real3 passing(Real3 v, int l) const { return now.velocities[std::size_t(ties[l].to)] - v; }
+    Real neighbour(int l) const { return ties[l].to != id ? Real(1) : Real(0); }
+    Real share(int l) const { return ties[l].share; }
+    Real stiffness(int l) const { return ties[l].stiffness; }
+    Real tension(int l) const { return Real(ties[l].stiffness) * Real(ties[l].rest); }
+    Real longest(int l) const { return torn_at(ties[l].rest, world.body); }
+    Real3 origin() const { return Real3(0); }
+    Real area() const { return outside_area; }
+    Real cover() const { return outside_cover; }
+    Real held(int i) const { return world.dragged[std::size_t(i)] == id ? Real(1) : Real(0); }
+    Real3 corner(int i) const { return Real3(world.corners[std::size_t(i)]); }
+    Real distance_at(int i, Real3 p) const { return world.fields[std::size_t(i)]->at(vec3(p)); }
+    Real3 uphill_at(int i, Real3 p) const { return Real3(world.fields[std::size_t(i)]->uphill(vec3(p))); }
+
+    static Real max(Real a, Real b) { return a > b ? a : b; }
+    static Real min(Real a, Real b) { return a < b ? a : b; }
+    static Real inversesqrt(Real a) { return 1 / std::sqrt(a); }
+    static bool any_node(bool c) { return c; }
+    static Real select(bool c, Real a, Real b) { return c ? a : b; }
+    static Real3 select(bool c, Real3 a, Real3 b) { return c ? a : b; }
+
+#define FN [[gnu::always_inline]]  // GCC leaves the longer ones out, which costs half the speed
+#define ASIDE
+#define UNROLL
+#define LINKS pass.links
+#include "palpate/solver/node.inl"
+#include "palpate/solver/obstacles.inl"
+#undef LINKS
+#undef UNROLL
+#undef ASIDE
+#undef FN
+};
+
+/// Node `i` among the others at `now`.
+template <class Real>
+SeeingNode<Real> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now, std::size_t i) {
+    return {all,
+            pass,
+            now,
+            int(i),
+            all.springs.ties.data() + i * std::size_t(all.springs.width),
+            Real(all.body.area[i]),
+            Real(all.body.cover[i])};
+}
+
+/// Node `i` as it is in `from`.
+template <class Real>
+typename SeeingNode<Real>::Node load(const Surroundings& all, const NodeStates<Real>& from, std::size_t i) {
+    return {from.positions[i], from.velocities[i], Real(all.body.inverse_mass[i])};
+}
+
+}  // namespace palpate::reference

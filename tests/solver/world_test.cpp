@@ -1,0 +1,131 @@
+// A world is its bodies, moved by the same calls: in slices, on one team, and all or none of them.
+#include "palpate/solver/world.h"
+
+#include "tests/integrators.h"
+#include "tests/refusal.h"
+#include "tests/solver/agreement.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+Body pinned_box() {
+    Body body = lattice({6, 5, 4}, 0.01f, tissue);
+    for (std::size_t i = 0; i < body.count(); i += 6) body.inverse_mass[i] = 0;
+    return body;
+}
+
+const Simulation on_cpu{.threads = 2, .step = 0.0005, .force = true};
+
+void expect_same_bits(const State& a, const State& b) {
+    EXPECT_TRUE(a.positions == b.positions);
+    EXPECT_TRUE(a.velocities == b.velocities);
+    EXPECT_EQ(a.lag, b.lag);
+}
+
+// Everything at once on two bodies, in one slice: to the bit what two solvers do.
+TEST(World, IsItsBodies) {
+    const Body bodies[] = {pinned_box(), cloth({9, 7}, 0.01f, linen)};
+    Simulation short_steps = on_cpu;
+    short_steps.step = 0.0001;  // a cloth is light
+    Team team(3);
+    World world(short_steps, nullptr, &team);
+    std::vector<std::unique_ptr<Solver>> alone;
+    for (const Body& body : bodies) {
+        world.add(body);
+        alone.push_back(make_solver(body, short_steps));
+    }
+    const Acting first = everything(bodies[0]);
+    const Drag drags[] = {{.node = 3, .to = vec3(0.05f), .stiffness = 1},
+                          {.node = 8, .stiffness = 2},
+                          {.node = 40, .stiffness = 0.5f}};
+    const BodyDrag on_bodies[] = {{1, drags[0]}, {0, drags[1]}, {1, drags[2]}};
+    const Drag of_second[] = {drags[0], drags[2]};
+    const BodyMove move{0, first.moves[0]};
+    for (int call = 0; call < 5; ++call) {
+        const WorldStats stats =
+            world.step(0.01, {.presses = first.presses, .drags = on_bodies, .moves = {&move, 1}});
+        ASSERT_FALSE(stats.diverged);
+        const Stats a = alone[0]->step(
+                        0.01, {.presses = first.presses, .drags = {&drags[1], 1}, .moves = first.moves}),
+                    b = alone[1]->step(0.01, {.presses = first.presses, .drags = of_second});
+        EXPECT_EQ(stats.bodies[0].steps, a.steps);
+        EXPECT_EQ(stats.reactions[0], a.reactions[0] + b.reactions[0]);
+        EXPECT_TRUE(stats.pulls == std::vector<dvec3>({b.pulls[0], a.pulls[0], b.pulls[1]}));
+    }
+    for (std::size_t b = 0; b < 2; ++b) expect_same_bits(world.save()[b], alone[b]->save());
+}
+
+// In slices all that moves evenly through a call is where it would be: the same steps, but for rounding.
+TEST(World, GoesOnInSlices) {
+    const Body body = pinned_box();
+    Acting on = everything(body);
+    on.colliders.clear();  // contacts make much of little
+    on.motions.clear();
+    World whole(on_cpu), sliced(on_cpu, nullptr, nullptr, 0.002);
+    for (World* world : {&whole, &sliced}) world->add(body);
+    const BodyDrag drag{0, on.drags[0]};
+    const BodyMove move{0, on.moves[0]};
+    const Acts acts{.presses = on.presses, .drags = {&drag, 1}, .moves = {&move, 1}};
+    const WorldStats one = whole.step(0.01, acts), five = sliced.step(0.01, acts);
+    EXPECT_EQ(one.bodies[0].steps, 20);
+    EXPECT_EQ(five.bodies[0].steps, 20);
+    const State a = whole.save()[0], b = sliced.save()[0];
+    EXPECT_LE(furthest_apart(a.positions, b.positions), 1e-7);
+    EXPECT_LE(furthest_apart(a.velocities, b.velocities), 1e-4);
+    for (std::size_t k = 0; k < on.moved.size(); ++k)
+        EXPECT_LE(glm::distance(b.positions[std::size_t(on.moved[k])], dvec3(on.places[k])), 1e-8);
+    EXPECT_LE(furthest_apart(one.reactions, five.reactions), 1e-6);
+    EXPECT_LE(furthest_apart(one.pulls, five.pulls), 1e-6);
+    EXPECT_GT(glm::length(one.pulls[0]), 1e-4);
+}
+
+// Whoever blows up, in whichever slice: then all are as they were, to the bit.
+TEST(World, GoesOnWithAllOrNone) {
+    for (const double slice : {0.01, 0.001})
+        for (const std::size_t wild : {0u, 1u, 2u}) {
+            World world({.step = 0.0001, .force = true}, nullptr, nullptr, slice);
+            for (int b = 0; b < 3; ++b) world.add(pinned_box());
+            ASSERT_FALSE(world.step(0.01).diverged);
+            std::vector<State> states = world.save();
+            states[wild].velocities[50] = {300, 0, 0};
+            world.restore(states);
+            const std::vector<State> before = world.save();
+            const WorldStats stats = world.step(0.01);
+            ASSERT_TRUE(stats.diverged);
+            EXPECT_EQ(*stats.diverged, wild);
+            for (std::size_t b = 0; b < 3; ++b) expect_same_bits(world.save()[b], before[b]);
+        }
+}
+
+TEST(World, UndoesACallOfManySlices) {
+    World world(on_cpu, nullptr, nullptr, 0.001);
+    for (int b = 0; b < 2; ++b) world.add(pinned_box());
+    world.step(0.01);
+    const std::vector<State> before = world.save();
+    world.step(0.01);
+    world.undo();
+    for (std::size_t b = 0; b < 2; ++b) expect_same_bits(world.save()[b], before[b]);
+}
+
+// What one body refuses moves none.
+TEST(World, RefusesBeforeAnythingMoves) {
+    World world(on_cpu);
+    world.add(pinned_box());
+    world.add(lattice({2, 2, 2}, 0.01f, tissue));
+    const std::vector<State> before = world.save();
+    const BodyDrag no_body{2, {}}, no_node{1, {.node = 8}};
+    EXPECT_NE(refusal([&] {
+                  world.step(0.01, {.drags = {&no_body, 1}});
+              }).find("body 2 of 2"),
+              std::string::npos);
+    EXPECT_NE(refusal([&] { world.step(0.01, {.drags = {&no_node, 1}}); }), "");
+    EXPECT_NE(refusal([&] { world.step(0); }), "");
+    EXPECT_NE(refusal([&] { World({}, nullptr, nullptr, 0); }), "");
+    EXPECT_NE(refusal([&] { world.restore({before[0]}); }), "");
+    for (std::size_t b = 0; b < 2; ++b) expect_same_bits(world.save()[b], before[b]);
+}
+
+}  // namespace
+}  // namespace palpate
