@@ -10,7 +10,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <numeric>
+#include <random>
 
 namespace palpate::speed {
 namespace {
@@ -19,6 +22,25 @@ const Material tissue{.youngs_modulus = 10'000, .density = 1040, .damping = 5};
 
 Simulation with(Backend backend, int threads = 1, Integrator integrator = Integrator::verlet) {
     return {.backend = backend, .threads = threads, .integrator = integrator};
+}
+
+// Its springs written out.
+Body in_a_table(Body body) {
+    body.springs = table(body);
+    body.cells.clear();  // which need a grid
+    return body;
+}
+
+// The same surface with its vertices in no order.
+Mesh shuffled(const Mesh& mesh) {
+    std::vector<unsigned> place(mesh.positions.size());
+    std::iota(place.begin(), place.end(), 0u);
+    std::shuffle(place.begin(), place.end(), std::mt19937(1));
+    Mesh to;
+    to.positions.resize(place.size());
+    for (std::size_t i = 0; i < place.size(); ++i) to.positions[place[i]] = mesh.positions[i];
+    for (uvec3 t : mesh.triangles) to.triangles.push_back({place[t.x], place[t.y], place[t.z]});
+    return to;
 }
 
 // Every link whole, as in 2005; one edge pinned.
@@ -89,10 +111,8 @@ std::vector<Case> lattice_cases() {
     add("27³, a stiffness for each node", hard, with(Backend::cpu));
     add("27³, 32 links (2012)",
         lattice(ivec3(27), 0.01f, SpringKinds{100, 50, 10}, {.mass = 1, .damping = 5}), with(Backend::cpu));
-    Body written = box;
-    written.springs = table(box);
-    written.cells.clear();  // which need a grid
-    add("27³, springs in a table", written, with(Backend::cpu));
+    add("27³, springs in a table", in_a_table(box), with(Backend::cpu));
+    add("64³, springs in a table", in_a_table(large), with(Backend::cpu));
     for (const auto& [integrator, name] : names(Integrator{}))
         if (integrator != Integrator::verlet)
             add(fmt::format("27³, {}", name), box, with(Backend::cpu, 1, integrator));
@@ -112,7 +132,10 @@ std::vector<Case> cloth_cases() {
     cases.push_back(
         stepping("128², damping along the springs", cloth(ivec2(128), 0.01f, damped), with(Backend::cpu)));
     const Body sheet = cloth(ivec2(128), 0.01f, linen);
-    cases.push_back(stepping("128² of triangles", cloth(face_mesh(sheet), linen), with(Backend::cpu)));
+    const Mesh triangles = face_mesh(sheet);
+    cases.push_back(stepping("128² of triangles", cloth(triangles, linen), with(Backend::cpu)));
+    cases.push_back(
+        stepping("128² of triangles, shuffled", cloth(shuffled(triangles), linen), with(Backend::cpu)));
     cases.push_back(stepping("128², the scalar reference", sheet, with(Backend::reference)));
     return cases;
 }
