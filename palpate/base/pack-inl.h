@@ -116,6 +116,16 @@ FN Pack3 load_each(At at) {
 #endif
 }
 
+// The other way: four floats for each lane, the last of them 0, one after the other.
+FN void store_each(Pack3 a, float* to) {
+#if HWY_TARGET == HWY_SCALAR
+    store(a, to, to + 1, to + 2, 0);
+    store(0.0f, to + 3);
+#else
+    hn::StoreInterleaved4(a.x.v, a.y.v, a.z.v, hn::Zero(Lanes()), Lanes(), to);
+#endif
+}
+
 // One vector after the other, x, y, z.
 FN void store_interleaved(Pack3 a, float* to) {
 #if HWY_TARGET == HWY_SCALAR

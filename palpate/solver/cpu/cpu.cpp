@@ -24,6 +24,8 @@ class Cpu final : public Machine {
         for (Where where : {current, between, further, sum})
             if (needs(scheme_, where)) states_[where] = fields(where == between && velocities_stay());
         before_ = fields(false);
+        for (Where where : {current, between, further})
+            if (states_[where].x) laid_.let_neighbours_see(states_[where]);
         share_out();
     }
 
@@ -61,14 +63,16 @@ class Cpu final : public Machine {
         Pass pass = quiet_;
         pass.kick = float(kick);
         std::vector<Array<float>> arrays;
-        Fields brought_up;
+        Fields brought_up{};
         for_each_field([&](float* Fields::*f) {
             arrays.emplace_back(laid_.layout(), int(arrays.size()));
             brought_up.*f = arrays.back().data();
         });
         const Fields states[] = {states_[current], brought_up, {}, {}};
+        const Sweep sweep{laid_.view(), pass, at_now, states, {}, {}};
         Largest none;
-        kernels_.pass({laid_.view(), pass, at_now, states, {}, {}}, 0, all_blocks(), none);
+        kernels_.show(sweep, 0, all_blocks());
+        kernels_.pass(sweep, 0, all_blocks(), none);
         std::vector<dvec3> velocities;
         for (int s : laid_.layout().slot)
             velocities.emplace_back(brought_up.vx[s], brought_up.vy[s], brought_up.vz[s]);
@@ -77,8 +81,9 @@ class Cpu final : public Machine {
 
     void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
         const Fields &at = states_[current], &free = states_[between];  // between calls nobody needs it
-        kernels_.normals({laid_.view(), quiet_, at_now, states_, {}, {}}, 0, all_blocks(), free.x, free.y,
-                         free.z);
+        const Sweep sweep{laid_.view(), quiet_, at_now, states_, {}, {}};
+        kernels_.show(sweep, 0, all_blocks());
+        kernels_.normals(sweep, 0, all_blocks(), free.x, free.y, free.z);
         positions.resize(body_.count());
         normals.resize(body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {
@@ -145,6 +150,10 @@ class Cpu final : public Machine {
             std::copy(std::begin(states_), std::end(states_), states);
             std::array<Bounds*, 4> moved;
             for (std::size_t where = 0; where < 4; ++where) moved[where] = moved_[where].data();
+            if (states[current].places) {
+                kernels_.show({laid_.view(), call.constant, at_now, states, moved, dragged}, first, end);
+                team_.meet();
+            }
             if (touched)
                 kernels_.find_bounds({laid_.view(), call.constant, at_now, states, moved, dragged}, first,
                                      end);

@@ -220,41 +220,67 @@ struct GridNode : Eyes<AnyPass> {
 
 // Nodes with their springs written out. What acts on a node whatever its springs, obstacles and tools, is
 // made for these alone.
-struct TableNode : Eyes<Pass> {
-    using WithPass = Pass;
-    using Quiet = TableNode;  // gathering takes nearly all the time
+template <class AnyPass = Pass>
+struct TableNode : Eyes<AnyPass> {
+    using WithPass = AnyPass;
+    using Quiet = TableNode<QuietPass>;
+    USE_EYES(AnyPass)
     struct Constants {
         explicit Constants(const Pass&) {}
     };
+    // As Ties says.
+    struct Pulling {
+        std::uint32_t to[HWY_LANES(float)];
+        float x[HWY_LANES(float)], y[HWY_LANES(float)], z[HWY_LANES(float)];
+        float stiffness[HWY_LANES(float)], tension[HWY_LANES(float)];
+    };
+    struct Whole {
+        float share[HWY_LANES(float)], stiffness[HWY_LANES(float)], longest[HWY_LANES(float)];
+    };
 
-    FN TableNode(const Sweep& s, const Pass& p, const Constants&, const Fields& from, int,
+    FN TableNode(const Sweep& s, const AnyPass& p, const Constants&, const Fields& from, int,
                  std::ptrdiff_t slot)
-        : Eyes<Pass>{s.body, p, s, from, slot} {}
+        : Eyes<AnyPass>{s.body, p, s, from, slot} {}
 
-    FN const TieFields& tie(int l) const { return body.ties[l]; }
-    FN auto to(int l) const { return hn::LoadU(hn::RebindToSigned<Lanes>(), tie(l).to + id); }
-    FN static Pack3 gather(const float* x, const float* y, const float* z,
-                           hn::Vec<hn::RebindToSigned<Lanes>> i) {
-        return {hn::GatherIndex(Lanes(), x, i), hn::GatherIndex(Lanes(), y, i),
-                hn::GatherIndex(Lanes(), z, i)};
+    FN const Slice& slice() const { return body.ties.slices[std::size_t(id) / lanes()]; }
+    FN const Pulling& pulling(int l) const {
+        return reinterpret_cast<const Pulling*>(body.ties.pulling)[slice().first + l];
+    }
+    FN const Whole& whole(int l) const {
+        return reinterpret_cast<const Whole*>(body.ties.whole)[slice().first + l];
+    }
+    FN Pack3 of_neighbours(const float* fours, int l) const {
+        const std::uint32_t* to = pulling(l).to;
+        return load_each([&](std::size_t lane) { return fours + to[lane]; });
     }
 
     FN Pack3 toward(Pack3 p, int l) const {
-        return gather(at.x, at.y, at.z, to(l)) - p + load(tie(l).x, tie(l).y, tie(l).z, id);
+        const Pulling& tie = pulling(l);
+        return of_neighbours(at.places, l) - p + load(tie.x, tie.y, tie.z, 0);
     }
-    FN Pack3 passing(Pack3 v, int l) const { return gather(at.vx, at.vy, at.vz, to(l)) - v; }
-    FN Pack share(int l) const { return load(tie(l).share + id); }
+    FN Pack3 passing(Pack3 v, int l) const { return of_neighbours(at.speeds, l) - v; }
+    FN Pack share(int l) const { return load(whole(l).share); }
     FN Pack neighbour(int) const { return 1.0f; }  // where there is none it is the node itself
-    FN Pack stiffness(int l) const { return load(tie(l).stiffness + id); }
-    FN Pack tension(int l) const { return load(tie(l).tension + id); }
-    FN Pack longest(int l) const { return load(tie(l).longest + id); }
+    FN Pack stiffness(int l) const { return load(whole(l).stiffness); }
+    FN Pack longest(int l) const { return load(whole(l).longest); }
 
-#define LINKS pass.links
+    // With the share worked into stiffness and tension.
+    FN Pack pull(int l, Pack square) const {
+        const Pulling& tie = pulling(l);
+        return load(tie.stiffness) - load(tie.tension) * inversesqrt(square);
+    }
+
+#undef FAN
+#define FAN slice().fan
+#define LINKS slice().count
 #define UNROLL
+#define OWN_PULL
 #include "palpate/solver/node.inl"
 #include "palpate/solver/obstacles.inl"
+#undef OWN_PULL
 #undef UNROLL
 #undef LINKS
+#undef FAN
 };
 
 // ---- what is done with them ----
@@ -314,11 +340,12 @@ FN void move(const Sweep& s, const typename At::WithPass& pass, const typename A
 // Out of the obstacles. `was`: where the step began.
 HWY_NOINLINE void push_out(const Sweep& s, int block, const Fields& was) {
     const Fields next = s.states[s.turn.next];
-    const TableNode::Constants none(s.pass);
-    for_each_pack<TableNode>(s, s.pass, none, next, block, [&](TableNode& eyes, std::ptrdiff_t i) INLINED {
-        const Pack3 before = load(was.x, was.y, was.z, i);
-        store_node(eyes.collide(load_node<TableNode>(s.body, next, i), before), next, i);
-    });
+    const TableNode<>::Constants none(s.pass);
+    for_each_pack<TableNode<>>(
+        s, s.pass, none, next, block, [&](TableNode<>& eyes, std::ptrdiff_t i) INLINED {
+            const Pack3 before = load(was.x, was.y, was.z, i);
+            store_node(eyes.collide(load_node<TableNode<>>(s.body, next, i), before), next, i);
+        });
 }
 
 // The nearest multiple of `finest`, which is a power of two; what is large is one already.
@@ -376,6 +403,18 @@ FN Bounds bounds_of(const Fields& at, const Block& block) {
     return {{least(low.x), least(low.y), least(low.z)}, {most(high.x), most(high.y), most(high.z)}};
 }
 
+// Four floats a node, where neighbours in a table look it up.
+HWY_NOINLINE void show_block(const Fields& at, const Block& block) {
+    for (std::ptrdiff_t i = block.first_slot; i < block.end_slot; i += std::ptrdiff_t(lanes())) {
+        if (at.places) store_each(load(at.x, at.y, at.z, i), at.places + 4 * i);
+        if (at.speeds) store_each(load(at.vx, at.vy, at.vz, i), at.speeds + 4 * i);
+    }
+}
+
+void show(const Sweep& s, int first_block, int end_block) {
+    for (int b = first_block; b < end_block; ++b) show_block(s.states[s.turn.at], s.body.blocks[b]);
+}
+
 // A pass: block after block, each whole while it is in the first cache. Where nothing is near, nothing is
 // looked for.
 template <class At>
@@ -401,6 +440,7 @@ void pass(const Sweep& s, int first_block, int end_block, Largest& largest) {
             }
         }
         if (s.turn.ends) finish(s, block, was.fields, largest);
+        if (s.body.springs == Springs::table) show_block(s.states[s.turn.next], block);
     }
 }
 
@@ -418,10 +458,10 @@ FN void add(Pack3 force, double seconds, dvec3& sum) {
 
 void give(const Sweep& s, int first_block, int end_block, Given* of_block) {
     const Fields at = s.states[s.turn.at];
-    const TableNode::Constants none(s.pass);
+    const TableNode<>::Constants none(s.pass);
     for (int b = first_block; b < end_block; ++b) {
         if (!touched(s, b, s.moved[s.turn.at][b])) continue;
-        for_each_pack<TableNode>(s, s.pass, none, at, b, [&](TableNode& eyes, std::ptrdiff_t i) INLINED {
+        for_each_pack<TableNode<>>(s, s.pass, none, at, b, [&](TableNode<>& eyes, std::ptrdiff_t i) INLINED {
             const Pack3 p = load(at.x, at.y, at.z, i);
             for (int t = 0; t < s.pass.tips; ++t) {
                 const Pack3 force = eyes.tip_force(p, t);
@@ -478,7 +518,7 @@ auto of(Springs springs, Act act) {
         case Springs::table:
             break;
     }
-    return act.template operator()<TableNode>();
+    return act.template operator()<TableNode<>>();
 }
 
 void pass_over(const Sweep& s, int first_block, int end_block, Largest& largest) {
@@ -492,7 +532,14 @@ bool torn_over(const Sweep& s, int first_block, int end_block) {
 }
 
 Kernels all() {
-    return {hwy::TargetName(HWY_TARGET), int(lanes()), pass_over, give, find_bounds, normals_over, torn_over};
+    return {hwy::TargetName(HWY_TARGET),
+            int(lanes()),
+            pass_over,
+            give,
+            find_bounds,
+            show,
+            normals_over,
+            torn_over};
 }
 
 }  // namespace palpate::cpu::HWY_NAMESPACE

@@ -3,6 +3,7 @@
 #include "palpate/solver/schedule.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace palpate::cpu {
 struct Fields {
     float *x, *y, *z;     // m, from each node's place at rest
     float *vx, *vy, *vz;  // m/s
+    // The same, four floats a node, for whoever has to look up neighbours one by one (show); else null.
+    float *places, *speeds;
 };
 
 /// The springs a kernel is made for; other bodies write theirs out.
@@ -29,11 +32,20 @@ enum class Springs {
     table
 };
 
-/// A spring of a table, of every slot.
-struct TieFields {
-    const int* to;           // slot
-    const float *x, *y, *z;  // m, from node to neighbour at rest
-    const float *share, *stiffness, *tension, *longest;
+/// How the springs of a register of nodes are written out: as many for each.
+struct Slice {
+    int first;  // of its ties among all
+    int count;
+    int fan;  // the first so many go round the nodes in a sheet
+};
+
+/// Springs written out, as one stream for what a step needs. Each tie is a record of the same numbers for
+/// each node of a register: where its neighbour lies in Fields::places; x, y, z of the way there at rest, m;
+/// stiffness and tension of what there is of it, N/m and N. Beside it lies what is asked now and then.
+struct Ties {
+    const Slice* slices;
+    const std::byte* pulling;
+    const float* whole;  // share; stiffness of a whole one, N/m; longest, m²
 };
 
 /// A body as it lies in memory: all that stays the same.
@@ -48,7 +60,7 @@ struct Laid {
     float spacing;                          // m, where links follow the axes
     const std::uint32_t* words[2];          // a grid's shares, one bit a link, or three of ten links each
     const float* half_strength;             // half of each node's factor on stiffness; null: 1
-    const TieFields* ties;                  // a table's
+    Ties ties;                              // a table's
     const float* inverse_mass;              // 1/kg
     const float *rest_x, *rest_y, *rest_z;  // m
     const float *area, *cover;              // m², m
@@ -91,6 +103,8 @@ struct Kernels {
     void (*pass)(const Sweep&, int first_block, int end_block, Largest& largest);
     void (*give)(const Sweep&, int first_block, int end_block, Given* of_block);
     void (*find_bounds)(const Sweep&, int first_block, int end_block);
+    /// Neighbours in a table see where nodes have been put from outside. Before anything looks at neighbours.
+    void (*show)(const Sweep&, int first_block, int end_block);
     void (*normals)(const Sweep&, int first_block, int end_block, float* x, float* y, float* z);
     bool (*torn)(const Sweep&, int first_block, int end_block);
 };

@@ -86,7 +86,8 @@ bool in_quarters(Springs springs) {
 }
 
 Layout layout_for(const Body& body, Springs springs, int lanes) {
-    return springs == Springs::table ? Layout(body.count(), lanes) : Layout(body.stencil(), lanes);
+    return springs == Springs::table ? Layout(order_for(table(body), body.count(), body.fan), lanes)
+                                     : Layout(body.stencil(), lanes);
 }
 
 }  // namespace
@@ -97,16 +98,20 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes)
 LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
                    const std::pair<Springs, std::vector<vec3>>& springs)
     : layout_(layout_for(body, springs.first, lanes)),
+      damped_(body.link_damping > 0),
       corners_(polygon_corners(simulation)),
       fields_(distance_fields(simulation)) {
     view_.springs = springs.first;
     view_.spacing = body.spacing;
     view_.finest = std::exp2(float(std::ilogb(std::max(furthest(body), 1e-30f)) + 1 - 51));
     std::copy(springs.second.begin(), springs.second.end(), view_.along.begin());
-    if (view_.springs == Springs::table)
-        lay_table(body);
-    else
+    if (view_.springs == Springs::table) {
+        ties_.emplace(body, layout_, lanes);
+        bytes_ += ties_->bytes();
+        view_.ties = ties_->view();
+    } else {
         lay_grid(body);
+    }
     bound_blocks(body);
     view_.runs = layout_.runs.data();
     view_.blocks = layout_.blocks.data();
@@ -146,27 +151,15 @@ void LaidBody::lay_grid(const Body& body) {
     if (varies) view_.half_strength = spread(half);
 }
 
-void LaidBody::lay_table(const Body& body) {
-    const Table springs = table(body);
-    for (int l = 0; l < springs.width; ++l) {
-        ints_.emplace_back(layout_, arrays_++);
-        bytes_ += ints_.back().bytes();
-        int* to = ints_.back().data();
-        for (int slot = 0; slot < layout_.slots; ++slot) to[slot] = slot;
-        float* fields[7];
-        for (float*& field : fields) field = keep();
-        for (std::size_t i = 0; i < body.count(); ++i) {
-            const Tie& tie = springs.of(i)[std::size_t(l)];
-            fields[6][i] = torn_at(tie.rest, body);
-            if (tie.to < 0) continue;
-            const vec3 way = body.positions[std::size_t(tie.to)] - body.positions[i];
-            const float values[] = {way.x, way.y, way.z, tie.share, tie.stiffness, tie.stiffness * tie.rest};
-            for (int k = 0; k < 6; ++k) fields[k][i] = values[k];
-            to[i] = tie.to;
-        }
-        ties_.push_back({to, fields[0], fields[1], fields[2], fields[3], fields[4], fields[5], fields[6]});
-    }
-    view_.ties = ties_.data();
+void LaidBody::let_neighbours_see(Fields& state) {
+    if (!ties_) return;
+    auto four_a_slot = [&] {
+        floats_.emplace_back(4 * std::size_t(layout_.slots), arrays_++);
+        bytes_ += floats_.back().bytes();
+        return floats_.back().data();
+    };
+    state.places = four_a_slot();
+    if (damped_) state.speeds = four_a_slot();
 }
 
 void LaidBody::bound_blocks(const Body& body) {

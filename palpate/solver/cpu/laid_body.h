@@ -1,6 +1,7 @@
 #pragma once
-#include "palpate/solver/cpu/kernel.h"
+#include "palpate/solver/cpu/ties.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,13 +18,14 @@ class LaidBody {
     const Laid& view() const { return view_; }
     /// One float a slot, for whoever needs more of them.
     Array<float> array() { return Array<float>(layout_, arrays_++); }
+    /// Gives a state what neighbours look at, if they are looked up one by one.
+    void let_neighbours_see(Fields& state);
     std::size_t bytes() const { return bytes_; }
 
  private:
     LaidBody(const Body& body, const Simulation& simulation, int lanes,
              const std::pair<Springs, std::vector<vec3>>& springs);
     void lay_grid(const Body& body);
-    void lay_table(const Body& body);
     void bound_blocks(const Body& body);
     const float* spread(const std::vector<float>& of_nodes);
     float* keep();
@@ -34,7 +36,8 @@ class LaidBody {
     std::vector<Array<float>> floats_;
     std::vector<Array<int>> ints_;
     std::vector<Array<std::uint32_t>> words_;
-    std::vector<TieFields> ties_;
+    std::optional<LaidTies> ties_;
+    bool damped_;                        // its springs: what neighbours look at are velocities too
     std::vector<Bounds> rest_bounds_;    // of blocks
     std::vector<float> furthest_cover_;  // of blocks
     std::vector<vec3> corners_;

@@ -167,8 +167,9 @@ Layout::Layout(const Stencil& stencil, int lanes) {
     make_blocks();
 }
 
-Layout::Layout(std::size_t nodes, int lanes) : slots(rounded_up(int(nodes), lanes)), margin(lanes) {
-    for (std::size_t i = 0; i < nodes; ++i) slot.push_back(int(i));
+Layout::Layout(std::span<const int> order, int lanes)
+    : slot(order.size()), slots(rounded_up(int(order.size()), lanes)) {
+    for (std::size_t i = 0; i < order.size(); ++i) slot[std::size_t(order[i])] = int(i);
     for (int first = 0; first < slots; first += Block::most)
         runs.push_back({first, std::min(Block::most, slots - first)});
     make_blocks();

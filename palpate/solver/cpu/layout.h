@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace palpate::cpu {
@@ -39,22 +40,25 @@ struct Layout {
     /// nodes, not the box.
     Layout(const Stencil& stencil, int lanes);
 
-    /// A body whose springs are written out: in its own order.
-    Layout(std::size_t nodes, int lanes);
+    /// A body whose springs are written out: its nodes in that order.
+    Layout(std::span<const int> order, int lanes);
 
  private:
     void make_blocks();
 };
 
-/// One T for each slot, zeros at first.
+/// Zeros at first.
 template <class T>
 class Array {
  public:
-    /// `number`: of the array. Each begins at another place of a page, else reading one waits for writing
-    /// another.
-    Array(const Layout& layout, int number) {
-        const std::size_t before = std::size_t(layout.margin) + std::size_t(number * 5 % 61) * line;
-        const std::size_t count = before + line + std::size_t(layout.slots + layout.margin);
+    Array() = default;
+    /// One T for each slot. `number`: of the array. Each begins at another place of a page, else reading one
+    /// waits for writing another.
+    Array(const Layout& layout, int number)
+        : Array(std::size_t(layout.slots + layout.margin), number, std::size_t(layout.margin)) {}
+    /// So many, and room before the first.
+    Array(std::size_t size, int number, std::size_t room = 0) {
+        const std::size_t before = room + std::size_t(number * 5 % 61) * line, count = before + line + size;
         bytes_ = (count * sizeof(T) + page - 1) / page * page;
         memory_.reset(static_cast<T*>(std::aligned_alloc(page, bytes_)));
         if (!memory_) throw std::bad_alloc();
