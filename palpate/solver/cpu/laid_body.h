@@ -34,10 +34,9 @@ class LaidBody {
     int arrays_ = 0;
     std::size_t bytes_ = 0;
     std::vector<Array<float>> floats_;
-    std::vector<Array<int>> ints_;
     std::vector<Array<std::uint32_t>> words_;
     std::optional<LaidTies> ties_;
-    bool damped_;                        // its springs: what neighbours look at are velocities too
+    bool damped_;                        // along its springs: neighbours look at velocities too
     std::vector<Bounds> rest_bounds_;    // of blocks
     std::vector<float> furthest_cover_;  // of blocks
     std::vector<vec3> corners_;
