@@ -17,6 +17,10 @@ void Guides::stand(const State& state) {
     for (std::size_t g = 0; g < guides_.size(); ++g) at_[g] = state.positions[std::size_t(guides_[g].node)];
 }
 
+void Guides::tell(State& state) const {
+    for (std::size_t g = 0; g < guides_.size(); ++g) state.positions[std::size_t(guides_[g].node)] = at_[g];
+}
+
 std::span<const Guide> Guides::lead(const Influences& influences, double seconds) {
     const double arrival = std::max(influences.arrival, seconds);
     for (Guide& guide : guides_) guide = {.node = guide.node};

@@ -23,6 +23,8 @@ class Guides {
 
     /// The nodes are there now.
     void stand(const State& state);
+    /// Where they are, exactly: a machine may have had to round it.
+    void tell(State& state) const;
 
     /// Leads them through a call of `seconds` towards where the moves say.
     std::span<const Guide> lead(const Influences& influences, double seconds);

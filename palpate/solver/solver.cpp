@@ -127,6 +127,7 @@ State Solver::state() const {
 
 State Solver::save() const {
     State state = machine_->get();
+    guides_.tell(state);
     state.lag = lag_;
     return state;
 }

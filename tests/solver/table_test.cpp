@@ -1,9 +1,8 @@
 // Springs in a table on the backend cpu: nets and sheets of every kind move as in the reference, however
 // their nodes lie in memory.
 #include "palpate/body/lattice.h"
-#include "palpate/solver/cpu/cpu.h"
 #include "palpate/solver/cpu/laid_body.h"
-#include "palpate/solver/reference/reference.h"
+#include "palpate/solver/machine.h"
 #include "palpate/solver/stability.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
@@ -260,7 +259,7 @@ TEST(Tables, LoseNothingByTheirShares) {
                                     [](const Tie& tie) { return tie.share == 0.75f; }));
     const Simulation how = simulation(body, {}, Integrator::verlet, Backend::cpu);
     const double frequency = highest_frequency(body), seconds = 100 * how.step;
-    auto exact = make_reference<double>(body, how, frequency), same = make_solver(grid, how),
+    auto exact = make_exact_solver(body, how, frequency), same = make_solver(grid, how),
          solver = make_solver(body, how);
     exact->step(seconds);
     same->step(seconds);

@@ -263,6 +263,9 @@ struct TableNode : Eyes<AnyPass> {
     FN Pack share(int l) const { return load(whole(l).share); }
     FN Pack neighbour(int) const { return 1.0f; }  // where there is none it is the node itself
     FN Pack stiffness(int l) const { return load(whole(l).stiffness); }
+    FN Pack tension(int l) const {
+        return select(share(l) > 0.0f, load(pulling(l).tension) / share(l), Pack(0.0f));
+    }
     FN Pack longest(int l) const { return load(whole(l).longest); }
 
     // With the share worked into stiffness and tension. The stream is longer than the nearer caches, and is
