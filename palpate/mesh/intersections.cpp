@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace palpate {
 namespace {
@@ -70,13 +71,44 @@ bool cut(const Triangle& a, const Triangle& b, double touch) {
            (!one_side_only(of_b) && any_side_passes(b, of_b, a, touch));
 }
 
-// Whether all faces of two nodes lie in one plane, where none can cut another.
-bool in_one_plane(const Tree::Plate& a, const Tree::Plate& b, double touch) {
-    if (!(a.thickness + b.thickness <= touch)) return false;
-    const dvec3 normal = glm::normalize(a.area), other = glm::normalize(b.area);
-    const double tilt = glm::length(glm::cross(normal, other)) * b.reach;
-    return tilt + std::abs(glm::dot(normal, b.centre - a.centre)) <= touch;
-}
+// The plates of a tree's nodes, and how far a vertex lies off each one's plane at most.
+class Planes {
+ public:
+    Planes(const Tree& tree, double touch)
+        : plates_(tree.plates()), thickness_(tree.nodes.size()), touch_(touch) {
+        tbb::parallel_for(std::size_t(0), thickness_.size(),
+                          [&](std::size_t i) { thickness_[i] = thickness(tree, tree.nodes[i], plates_[i]); });
+    }
+
+    // Whether all faces of two nodes lie in one plane, where none can cut another.
+    bool in_one_plane(Index node, Index other) const {
+        if (!(thickness_[node] + thickness_[other] <= touch_)) return false;
+        const Tree::Plate &a = plates_[node], &b = plates_[other];
+        const double tilt = glm::length(glm::cross(glm::normalize(a.area), glm::normalize(b.area))) * b.reach;
+        return tilt + std::abs(glm::dot(glm::normalize(a.area), b.centre - a.centre)) <= touch_;
+    }
+
+ private:
+    // Infinite where it is more than counts as one plane, as is seen after a few faces of most.
+    double thickness(const Tree& tree, const Tree::Node& node, const Tree::Plate& plate) const {
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        const double length = glm::length(plate.area);
+        if (length == 0) return infinite;
+        double thickness = 0;
+        for (Index i = node.first; i < node.first + node.count; ++i)
+            for (int k = 0; k < 3; ++k) {
+                const dvec3 corner(tree.mesh.positions[tree.mesh.triangles[tree.faces[i]][k]]);
+                thickness =
+                    std::max(thickness, std::abs(glm::dot(plate.area, corner - plate.centre)) / length);
+                if (thickness > touch_) return infinite;
+            }
+        return thickness;
+    }
+
+    std::vector<Tree::Plate> plates_;
+    std::vector<double> thickness_;  // m
+    double touch_;
+};
 
 // Where few faces are in the way, these and `rings` of faces around them.
 void drop_around(Mesh& mesh, const Intersections& found, int rings) {
@@ -109,11 +141,11 @@ Intersections intersections(const Mesh& mesh, std::size_t most) {
     if (tree.nodes.empty()) return found;
     const dvec3 size = dvec3(tree.nodes[0].high) - dvec3(tree.nodes[0].low);
     const double touch = 1e-6 * std::max({size.x, size.y, size.z});
-    std::vector<Triangle> triangles;
-    triangles.reserve(mesh.triangles.size());
-    for (Index face : tree.faces) triangles.push_back(triangle(mesh, face));
+    std::vector<Triangle> triangles(tree.faces.size());
+    tbb::parallel_for(std::size_t(0), triangles.size(),
+                      [&](std::size_t i) { triangles[i] = triangle(mesh, tree.faces[i]); });
 
-    const std::vector<Tree::Plate> plates = tree.plates();
+    const Planes planes(tree, touch);
     std::vector<uvec2> leaves;  // pairs of them that wait to be looked at, many at once
     std::vector<std::vector<uvec2>> cuts;
     auto look_at_leaves = [&] {
@@ -133,7 +165,7 @@ Intersections intersections(const Mesh& mesh, std::size_t most) {
     std::size_t looks = 0;
     const std::size_t most_looks = most_looks_at(mesh);
     found.all = for_each_pair_of_leaves(
-        tree, 0, [&](Index a, Index b) { return in_one_plane(plates[a], plates[b], touch); },
+        tree, 0, [&](Index a, Index b) { return planes.in_one_plane(a, b); },
         [&](Index a, Index b) {
             leaves.push_back({a, b});
             looks += std::size_t(tree.nodes[a].count) * tree.nodes[b].count;

@@ -3,9 +3,9 @@
 #include "palpate/mesh/triangle.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -14,21 +14,31 @@ namespace {
 
 constexpr Index most_in_a_leaf = 4;
 
+// How many nodes a tree over so many faces has, and a tree over one more. Of both, halves are of two sizes
+// that differ by one again: so it takes a step for each time that the number can be halved.
+std::pair<Index, Index> nodes_over(Index count) {
+    if (count < most_in_a_leaf) return {1, 1};
+    const auto [less, more] = nodes_over(count / 2);
+    const Index even = 1 + 2 * (count % 2 == 0 ? less : more), odd = 1 + less + more;
+    if (count % 2 == 1) return {odd, even};
+    return {count == most_in_a_leaf ? 1 : even, odd};
+}
+
+// Since it is known beforehand how many nodes a half has, both halves are built at once, and come out the
+// same whoever builds them.
 class Halving {
  public:
-    Halving(const Mesh& mesh, Tree& tree) : mesh_(mesh), tree_(tree) {
-        placed_.reserve(tree.faces.size());
-        for (Index face : tree.faces) {
-            const uvec3 t = mesh.triangles[face];
-            placed_.push_back(
-                {mesh.positions[t.x] / 3.0f + mesh.positions[t.y] / 3.0f + mesh.positions[t.z] / 3.0f, face});
-        }
+    explicit Halving(Tree& tree) : mesh_(tree.mesh), tree_(tree), placed_(tree.faces.size()) {
+        tree.nodes.resize(nodes_over(Index(tree.faces.size())).first);
+        tbb::parallel_for(std::size_t(0), placed_.size(), [&](std::size_t i) {
+            const uvec3 t = mesh_.triangles[tree.faces[i]];
+            placed_[i] = {
+                mesh_.positions[t.x] / 3.0f + mesh_.positions[t.y] / 3.0f + mesh_.positions[t.z] / 3.0f,
+                tree.faces[i]};
+        });
     }
 
-    void halve_all() {
-        halve(0, Index(placed_.size()));
-        for (std::size_t i = 0; i < placed_.size(); ++i) tree_.faces[i] = placed_[i].face;
-    }
+    void halve_all() { halve(0, 0, Index(placed_.size())); }
 
  private:
     struct Placed {
@@ -36,25 +46,48 @@ class Halving {
         Index face;
     };
 
-    void halve(Index first, Index count) {
-        const std::size_t here = tree_.nodes.size();
-        Bounds box, middle;
-        for (Index i = first; i < first + count; ++i) {
-            const uvec3 t = mesh_.triangles[placed_[i].face];
-            for (int k = 0; k < 3; ++k) box.include(mesh_.positions[t[k]]);
-            middle.include(placed_[i].middle);
+    void halve(Index node, Index first, Index count) {
+        Tree::Node& here = tree_.nodes[node];
+        here.first = first, here.count = count, here.second = 0;
+        if (count <= most_in_a_leaf) return enclose(here);
+        const Index half = count / 2;
+        part_by_middle(first, count);
+        here.second = node + 1 + nodes_over(half).first;
+        const auto first_half = [&] { halve(node + 1, first, half); };
+        const auto second_half = [&] { halve(here.second, first + half, count - half); };
+        if (count > worth_sharing) {
+            tbb::parallel_invoke(first_half, second_half);
+        } else {
+            first_half();
+            second_half();
         }
-        tree_.nodes.push_back({box.low, box.high, first, count, 0});
-        if (count <= most_in_a_leaf) return;
-        const vec3 size = middle.size();
+        here.low = glm::min(tree_.nodes[node + 1].low, tree_.nodes[here.second].low);
+        here.high = glm::max(tree_.nodes[node + 1].high, tree_.nodes[here.second].high);
+    }
+
+    // Puts the half of the faces that lie lower along the longest axis first.
+    void part_by_middle(Index first, Index count) {
+        Bounds middles;
+        for (Index i = first; i < first + count; ++i) middles.include(placed_[i].middle);
+        const vec3 size = middles.size();
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const auto begin = placed_.begin() + first;
         std::nth_element(begin, begin + count / 2, begin + count,
                          [&](const Placed& a, const Placed& b) { return a.middle[axis] < b.middle[axis]; });
-        halve(first, count / 2);
-        tree_.nodes[here].second = Index(tree_.nodes.size());
-        halve(first + count / 2, count - count / 2);
     }
+
+    // A leaf and its faces.
+    void enclose(Tree::Node& leaf) {
+        Bounds box;
+        for (Index i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            tree_.faces[i] = placed_[i].face;
+            const uvec3 t = mesh_.triangles[placed_[i].face];
+            for (int k = 0; k < 3; ++k) box.include(mesh_.positions[t[k]]);
+        }
+        leaf.low = box.low, leaf.high = box.high;
+    }
+
+    static constexpr Index worth_sharing = 4096;  // faces, of a task of its own
 
     const Mesh& mesh_;
     Tree& tree_;
@@ -77,20 +110,36 @@ std::vector<Index> all_faces(const Mesh& mesh) {
 Tree::Tree(const Mesh& all) : Tree(all, all_faces(all)) {}
 
 Tree::Tree(const Mesh& all, std::vector<Index> some) : faces(std::move(some)), mesh(all) {
-    nodes.reserve(faces.size());
-    if (!faces.empty()) Halving(mesh, *this).halve_all();
+    if (!faces.empty()) Halving(*this).halve_all();
 }
 
 std::vector<Tree::Plate> Tree::plates() const {
-    std::vector<Plate> result(nodes.size());
-    tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) { result[i] = plate(nodes[i]); });
-    return result;
+    std::vector<Plate> plates(nodes.size());
+    std::vector<double> size(nodes.size());  // m², whichever way faces look
+    // First `centre` is the sum of the faces' own, each by its size.
+    tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) {
+        if (nodes[i].second == 0) size[i] = add_faces(nodes[i], plates[i]);
+    });
+    for (std::size_t i = nodes.size(); i-- > 0;) {  // halves stand behind what they are halves of
+        if (nodes[i].second == 0) continue;
+        for (const std::size_t half : {i + 1, std::size_t(nodes[i].second)}) {
+            plates[i].area += plates[half].area;
+            plates[i].centre += plates[half].centre;
+            size[i] += size[half];
+        }
+    }
+    tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) {
+        const dvec3 low(nodes[i].low), high(nodes[i].high);
+        dvec3& centre = plates[i].centre;
+        centre = size[i] > 0 ? centre / size[i] : 0.5 * (low + high);
+        plates[i].reach = glm::length(glm::max(high - centre, centre - low));
+    });
+    return plates;
 }
 
-Tree::Plate Tree::plate(const Node& node) const {
-    Plate plate{};
+double Tree::add_faces(const Node& leaf, Plate& plate) const {
     double size = 0;
-    for (Index i = node.first; i < node.first + node.count; ++i) {
+    for (Index i = leaf.first; i < leaf.first + leaf.count; ++i) {
         const uvec3 t = mesh.triangles[faces[i]];
         const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
         const dvec3 area = 0.5 * glm::cross(b - a, c - a);
@@ -98,20 +147,7 @@ Tree::Plate Tree::plate(const Node& node) const {
         plate.centre += glm::length(area) * (a + b + c) / 3.0;
         size += glm::length(area);
     }
-    const dvec3 low(node.low), high(node.high);
-    plate.centre = size > 0 ? plate.centre / size : 0.5 * (low + high);
-    plate.reach = glm::length(glm::max(high - plate.centre, plate.centre - low));
-    plate.thickness = std::numeric_limits<double>::infinity();
-    const double length = glm::length(plate.area);
-    if (length == 0) return plate;
-    plate.thickness = 0;
-    for (Index i = node.first; i < node.first + node.count; ++i)
-        for (int k = 0; k < 3; ++k) {
-            const dvec3 corner(mesh.positions[mesh.triangles[faces[i]][k]]);
-            plate.thickness =
-                std::max(plate.thickness, std::abs(glm::dot(plate.area, corner - plate.centre)) / length);
-        }
-    return plate;
+    return size;
 }
 
 Tree::Nearest Tree::nearest(vec3 p, float most, Index guess) const {

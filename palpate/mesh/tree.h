@@ -16,10 +16,9 @@ struct Tree {
     };
     /// A node's faces as seen from afar: a single flat one.
     struct Plate {
-        dvec3 area;        // normal times area, m²
-        dvec3 centre;      // m
-        double reach;      // m, from the centre to the farthest corner of the node's box, or more
-        double thickness;  // m, how far at most a vertex lies off the plate's plane; infinite if it has none
+        dvec3 area{0};     // normal times area, m²
+        dvec3 centre{0};   // m
+        double reach = 0;  // m, from the centre to the farthest corner of the node's box, or more
     };
     std::vector<Plate> plates() const;
 
@@ -43,7 +42,7 @@ struct Tree {
     const Mesh& mesh;
 
  private:
-    Plate plate(const Node& node) const;
+    double add_faces(const Node& leaf, Plate& plate) const;
 };
 
 }  // namespace palpate
