@@ -2,7 +2,8 @@
 #include "palpate/mesh/repair.h"
 #include "palpate/mesh/winding_number.h"
 
-#include <array>
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -30,35 +31,24 @@ std::vector<std::optional<int>> surroundings(const Mesh& mesh, const Parts& part
     const WindingNumber all(tree);
     std::vector<std::vector<Index>> faces(part.count);
     for (Index face = 0; face < part.of.size(); ++face) faces[part.of[face]].push_back(face);
-    auto corners = [&](Index face) {
-        const uvec3 t = mesh.triangles[face];
-        return std::array{dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z])};
-    };
-    auto around = [&](const std::vector<Index>& own, Index face) {
-        const auto [a, b, c] = corners(face);
-        const dvec3 point = (a + b + c) / 3.0;
-        double others = all.at(point);
-        for (Index f : own) {
-            const auto [u, v, w] = corners(f);
-            others -= solid_angle(point, u, v, w);
-        }
-        return others;
-    };
-    std::vector<std::optional<int>> result;
-    for (const std::vector<Index>& own : faces) {
+    const auto around = [&](const std::vector<Index>& own) -> std::optional<int> {
         const std::size_t looks = std::min(most_looks, own.size());
         int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
         for (std::size_t look = 0; look < looks; ++look) {
-            const double seen = around(own, own[look * own.size() / looks]);
+            const uvec3 t = mesh.triangles[own[look * own.size() / looks]];
+            const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]),
+                middle = (a + b + c) / 3.0;
+            const double seen = all.at(middle) - exact_winding(mesh, own, middle);
             const int whole = int(std::lround(seen));
             if (std::abs(seen - whole) > 0.25) continue;
             least = std::min(least, whole);
             most = std::max(most, whole);
         }
-        result.push_back(most < least    ? std::optional(0)
-                         : most == least ? std::optional(most)
-                                         : std::nullopt);
-    }
+        if (most < least) return 0;
+        return most == least ? std::optional(most) : std::nullopt;
+    };
+    std::vector<std::optional<int>> result(part.count);
+    tbb::parallel_for(Index(0), part.count, [&](Index i) { result[i] = around(faces[i]); });
     return result;
 }
 
@@ -105,11 +95,12 @@ std::size_t turn_parts(Mesh& mesh) {
     return turned;
 }
 
-std::size_t drop_nested(Mesh& mesh) {
+Nested drop_nested(Mesh& mesh) {
+    Nested found;
     const Parts part = parts(mesh);
-    if (part.count < 2) return 0;
-    std::size_t crossing = 0;
-    return keep_parts(mesh, part, part_inside_from_outside(mesh, part, crossing)).parts;
+    if (part.count < 2) return found;
+    found.dropped = keep_parts(mesh, part, part_inside_from_outside(mesh, part, found.crossing)).parts;
+    return found;
 }
 
 Nesting nesting(const Mesh& mesh) {

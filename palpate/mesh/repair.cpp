@@ -187,15 +187,18 @@ bool is_one_sided_sheet(const Mesh& mesh) {
     return disc > 0.25 * area_from(mesh, 0);
 }
 
-// Leaves of closed parts those that part inside from outside, and what is large enough.
-void settle(Mesh& mesh, const RepairSettings& settings, Steps& steps) {
+// Leaves of closed parts those that part inside from outside, and what is large enough. Returns how many lie
+// partly inside others.
+std::size_t settle(Mesh& mesh, const RepairSettings& settings, Steps& steps) {
     steps.add("faces without an area removed", drop_flat_faces(mesh));
     drop_sheets(mesh, mesh.triangles.size(), steps);
     steps.add("specks dropped", drop_specks(mesh, settings.specks));
     if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh));
     steps.add("parts turned right way out", turn_parts(mesh));
-    steps.add("parts dropped that lay inside another", drop_nested(mesh));
+    const Nested nested = drop_nested(mesh);
+    steps.add("parts dropped that lay inside another", nested.dropped);
     drop_unused(mesh);
+    return nested.dropped == 0 ? nested.crossing : nesting(mesh).crossing;
 }
 
 // Makes a solid of the mesh's own faces. Returns why that failed, or nothing.
@@ -208,7 +211,7 @@ std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps)
     drop_sheets(mesh, closing, steps);
     steps.add("faces dropped that lay back to back", drop_flaps(mesh));
     steps.add("vertices added to part what only touches", part_sheets(mesh));
-    settle(mesh, settings, steps);
+    std::size_t crossing = settle(mesh, settings, steps);
     const Intersections cuts = intersections(mesh);
     if (!cuts.all) steps.add("faces too crowded to be searched for cuts", mesh.triangles.size());
     if (!cuts.faces.empty()) {
@@ -219,10 +222,9 @@ std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps)
                                cuts.faces.size());
         steps.add("faces replaced that cut through each other", mended).volume +=
             std::abs(volume(mesh) - before);
-        settle(mesh, settings, steps);
+        crossing = settle(mesh, settings, steps);
     }
-    if (const std::size_t crossing = nesting(mesh).crossing; crossing > 0)
-        return fmt::format("{} parts lie partly inside others", crossing);
+    if (crossing > 0) return fmt::format("{} parts lie partly inside others", crossing);
     if (!is_closed(mesh)) return "some of its holes cannot be closed";
     if (!(volume(mesh) > 0)) return "its walls enclose nothing";
     return {};

@@ -70,6 +70,12 @@ struct Dropped {
     std::size_t crowded = 0;  // faces, if too many lay together to search them for parts that touch
 };
 
+/// What was found of parts that lie inside others.
+struct Nested {
+    std::size_t dropped = 0;
+    std::size_t crossing = 0;  // lie only partly inside others, and stay
+};
+
 /// Makes one vertex of all that lie at the same place; returns how many vertices went.
 /// `tolerance` (m): a vertex no farther than this from one before it becomes that one; 0 welds only equal
 /// positions.
@@ -125,8 +131,8 @@ std::size_t turn_faces(Mesh& mesh);
 std::size_t turn_parts(Mesh& mesh);
 
 /// Drops the parts that lie inside another and are no cavity of it, so that what is left parts inside from
-/// outside. The volume stays as it is. Returns how many went. Turn parts first.
-std::size_t drop_nested(Mesh& mesh);
+/// outside. The volume stays as it is. Turn parts first.
+Nested drop_nested(Mesh& mesh);
 
 /// Closes each loop of open edges with new faces between its vertices; returns how many loops. All edges then
 /// have as many faces one way as the other, if neighbours turned the same way before.

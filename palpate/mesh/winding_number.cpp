@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace palpate {
 namespace {
@@ -53,6 +54,21 @@ class Angles {
 double solid_angle(dvec3 point, dvec3 a, dvec3 b, dvec3 c) {
     const Half half = half_solid_angle(point, a, b, c);
     return half.up == 0 ? 0 : 2 * std::atan2(half.up, half.along) / whole_sphere;
+}
+
+double exact_winding(const Mesh& mesh, std::span<const Index> faces, dvec3 point) {
+    constexpr std::size_t at_once = 4096;
+    std::vector<double> sums((faces.size() + at_once - 1) / at_once);
+    tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t i) {
+        Angles angles;
+        for (Index face : faces.subspan(i * at_once, std::min(at_once, faces.size() - i * at_once))) {
+            const uvec3 t = mesh.triangles[face];
+            angles.add(half_solid_angle(point, dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]),
+                                        dvec3(mesh.positions[t.z])));
+        }
+        sums[i] = 2 * angles.sum() / whole_sphere;
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 // What is far, and what is near.

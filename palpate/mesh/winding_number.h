@@ -2,6 +2,7 @@
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/tree.h"
 
+#include <span>
 #include <vector>
 
 namespace palpate {
@@ -50,5 +51,9 @@ class WindingNumber {
 /// The part of the sphere around `point` that a triangle covers, over 4 pi: positive if its back is seen.
 /// Exact; 0 if the point is one of its corners.
 double solid_angle(dvec3 point, dvec3 a, dvec3 b, dvec3 c);
+
+/// The exact sum over these faces of a mesh; all processors share it, and it is the same by any number of
+/// them.
+double exact_winding(const Mesh& mesh, std::span<const Index> faces, dvec3 point);
 
 }  // namespace palpate
