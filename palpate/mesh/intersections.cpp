@@ -135,8 +135,10 @@ std::size_t count_faces(const Intersections& found) {
 
 std::size_t most_looks_at(const Mesh& mesh) { return 10'000'000 + 100 * mesh.triangles.size(); }
 
-Intersections intersections(const Mesh& mesh, std::size_t most) {
-    const Tree tree(mesh);
+Intersections intersections(const Mesh& mesh, std::size_t most) { return intersections(Tree(mesh), most); }
+
+Intersections intersections(const Tree& tree, std::size_t most) {
+    const Mesh& mesh = tree.mesh;
     Intersections found;
     if (tree.nodes.empty()) return found;
     const dvec3 size = dvec3(tree.nodes[0].high) - dvec3(tree.nodes[0].low);

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/mesh/mesh.h"
+#include "palpate/mesh/tree.h"
 
 #include <cstddef>
 #include <vector>
@@ -16,6 +16,7 @@ struct Intersections {
 /// the edge they share. Gives up, and says so, after about `most` pairs or a hundred tests a face, which
 /// only great bundles of long thin faces need.
 Intersections intersections(const Mesh& mesh, std::size_t most = 1'000'000);
+Intersections intersections(const Tree& tree, std::size_t most = 1'000'000);
 
 /// How many pairs of faces a search of this kind looks at before it gives up.
 std::size_t most_looks_at(const Mesh& mesh);

@@ -25,10 +25,9 @@ std::vector<char> inward(const Mesh& mesh, const Parts& part) {
 
 // How many times all others wind around each part, as seen from the middles of a few of its faces; nothing if
 // they do not agree. A look from where another part touches tells nothing and does not count.
-std::vector<std::optional<int>> surroundings(const Mesh& mesh, const Parts& part) {
+std::vector<std::optional<int>> surroundings(const Mesh& mesh, const Parts& part, SharedTree& tree) {
     constexpr std::size_t most_looks = 8;
-    const Tree tree(mesh);
-    const WindingNumber all(tree);
+    const WindingNumber all(tree.get());
     std::vector<std::vector<Index>> faces(part.count);
     for (Index face = 0; face < part.of.size(); ++face) faces[part.of[face]].push_back(face);
     const auto around = [&](const std::vector<Index>& own) -> std::optional<int> {
@@ -52,13 +51,14 @@ std::vector<std::optional<int>> surroundings(const Mesh& mesh, const Parts& part
     return result;
 }
 
-// Which parts to turn: those that lie in no other, if they are inside out; and all, if all of these are.
-std::vector<char> wrong_way_out(const Mesh& mesh, const Parts& part) {
+// Which parts to turn: those that lie in no other, if they are inside out; and all, if all of these are. The
+// mesh is changed only for the while, so that its tree can be asked.
+std::vector<char> wrong_way_out(Mesh& mesh, const Parts& part, SharedTree& tree) {
     const std::vector<char> is_inward = inward(mesh, part);
     if (part.count < 2 || std::count(is_inward.begin(), is_inward.end(), true) == 0) return is_inward;
-    Mesh outward{mesh.positions, {}, mesh.triangles};
-    turn_over(outward, part, is_inward);
-    const std::vector<std::optional<int>> around = surroundings(outward, part);
+    turn_over(mesh, part, is_inward);
+    const std::vector<std::optional<int>> around = surroundings(mesh, part, tree);
+    turn_over(mesh, part, is_inward);
     std::vector<char> turn(part.count);
     bool all = true;
     for (Index i = 0; i < part.count; ++i) {
@@ -72,9 +72,10 @@ std::vector<char> wrong_way_out(const Mesh& mesh, const Parts& part) {
 
 // Whether each part has inside on one side and outside on the other; `crossing` counts those that have in one
 // place and not in another.
-std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, std::size_t& crossing) {
+std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, SharedTree& tree,
+                                           std::size_t& crossing) {
     const std::vector<char> is_inward = inward(mesh, part);
-    const std::vector<std::optional<int>> around = surroundings(mesh, part);
+    const std::vector<std::optional<int>> around = surroundings(mesh, part, tree);
     std::vector<char> does;
     crossing = 0;
     for (Index i = 0; i < part.count; ++i) {
@@ -86,32 +87,45 @@ std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, 
 
 }  // namespace
 
-std::size_t turn_parts(Mesh& mesh) {
+std::size_t turn_parts(Mesh& mesh, SharedTree& tree) {
     const Parts part = parts(mesh);
-    const std::vector<char> turn = wrong_way_out(mesh, part);
+    const std::vector<char> turn = wrong_way_out(mesh, part, tree);
     const auto turned = std::size_t(std::count(turn.begin(), turn.end(), true));
     turn_over(mesh, part, turn);
     if (turned > 0) drop_attributes(mesh);
     return turned;
 }
 
-Nested drop_nested(Mesh& mesh) {
+std::size_t turn_parts(Mesh& mesh) {
+    SharedTree tree(mesh);
+    return turn_parts(mesh, tree);
+}
+
+Nested drop_nested(Mesh& mesh, SharedTree& tree) {
     Nested found;
     const Parts part = parts(mesh);
     if (part.count < 2) return found;
-    found.dropped = keep_parts(mesh, part, part_inside_from_outside(mesh, part, found.crossing)).parts;
+    const std::vector<char> keep = part_inside_from_outside(mesh, part, tree, found.crossing);
+    found.dropped = keep_parts(mesh, part, keep).parts;
+    if (found.dropped > 0) tree.forget();
     return found;
+}
+
+Nested drop_nested(Mesh& mesh) {
+    SharedTree tree(mesh);
+    return drop_nested(mesh, tree);
 }
 
 Nesting nesting(const Mesh& mesh) {
     Nesting found;
     const Parts part = parts(mesh);
-    const std::vector<char> turn = wrong_way_out(mesh, part);
+    Mesh turned{mesh.positions, {}, mesh.triangles};
+    SharedTree tree(turned);
+    const std::vector<char> turn = wrong_way_out(turned, part, tree);
     found.inside_out = std::size_t(std::count(turn.begin(), turn.end(), true));
     if (part.count < 2) return found;
-    Mesh turned{mesh.positions, {}, mesh.triangles};
     turn_over(turned, part, turn);
-    const std::vector<char> keep = part_inside_from_outside(turned, part, found.crossing),
+    const std::vector<char> keep = part_inside_from_outside(turned, part, tree, found.crossing),
                             is_inward = inward(turned, part);
     for (Index i = 0; i < part.count; ++i) {
         found.redundant += !keep[i];

@@ -52,8 +52,8 @@ std::vector<Index> one_part_nodes(const Tree& tree, const Parts& part) {
 }
 
 // Returns whether all that may touch was looked at.
-bool unite_touching(const Mesh& mesh, const Parts& part, Groups& groups) {
-    const Tree tree(mesh);
+bool unite_touching(const Tree& tree, const Parts& part, Groups& groups) {
+    const Mesh& mesh = tree.mesh;
     const std::vector<Index> only = one_part_nodes(tree, part);
     const vec3 size = bounds(mesh).size();
     const double reach = touching * double(std::max({size.x, size.y, size.z}));
@@ -218,10 +218,13 @@ void measure(const Mesh& mesh, const Parts& part, Pieces& found) {
 
 }  // namespace
 
-Pieces pieces(const Mesh& mesh, const Parts& part) {
+Pieces pieces(const Mesh& mesh, const Parts& part) { return pieces(Tree(mesh), part); }
+
+Pieces pieces(const Tree& tree, const Parts& part) {
+    const Mesh& mesh = tree.mesh;
     Groups groups(part.count);
     Pieces found;
-    found.all = unite_touching(mesh, part, groups);
+    found.all = unite_touching(tree, part, groups);
     if (found.all)
         unite_nested(mesh, part, groups);
     else
@@ -243,8 +246,9 @@ Dropped keep_largest(Mesh& mesh) {
     const Parts part = parts(mesh);
     if (part.count < 2) return {};
     Mesh turned{mesh.positions, {}, mesh.triangles};
-    turn_parts(turned);
-    const Pieces found = pieces(turned, part);
+    SharedTree tree(turned);
+    turn_parts(turned, tree);
+    const Pieces found = pieces(tree.get(), part);
     if (!found.all) return {.crowded = mesh.triangles.size()};
     if (found.volume.size() < 2) return {};
     const auto largest =

@@ -18,5 +18,6 @@ struct Pieces {
 /// hundredths; each of hundreds of them less exactly. If faces are too crowded to look at all of them,
 /// everything is one piece.
 Pieces pieces(const Mesh& mesh, const Parts& parts);
+Pieces pieces(const Tree& tree, const Parts& parts);  // of its mesh
 
 }  // namespace palpate

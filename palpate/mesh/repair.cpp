@@ -189,13 +189,14 @@ bool is_one_sided_sheet(const Mesh& mesh) {
 
 // Leaves of closed parts those that part inside from outside, and what is large enough. Returns how many lie
 // partly inside others.
-std::size_t settle(Mesh& mesh, const RepairSettings& settings, Steps& steps) {
+std::size_t settle(Mesh& mesh, SharedTree& tree, const RepairSettings& settings, Steps& steps) {
+    tree.forget();
     steps.add("faces without an area removed", drop_flat_faces(mesh));
     drop_sheets(mesh, mesh.triangles.size(), steps);
     steps.add("specks dropped", drop_specks(mesh, settings.specks));
     if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh));
-    steps.add("parts turned right way out", turn_parts(mesh));
-    const Nested nested = drop_nested(mesh);
+    steps.add("parts turned right way out", turn_parts(mesh, tree));
+    const Nested nested = drop_nested(mesh, tree);
     steps.add("parts dropped that lay inside another", nested.dropped);
     drop_unused(mesh);
     return nested.dropped == 0 ? nested.crossing : nesting(mesh).crossing;
@@ -211,8 +212,9 @@ std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps)
     drop_sheets(mesh, closing, steps);
     steps.add("faces dropped that lay back to back", drop_flaps(mesh));
     steps.add("vertices added to part what only touches", part_sheets(mesh));
-    std::size_t crossing = settle(mesh, settings, steps);
-    const Intersections cuts = intersections(mesh);
+    SharedTree tree(mesh);
+    std::size_t crossing = settle(mesh, tree, settings, steps);
+    const Intersections cuts = intersections(tree.get());
     if (!cuts.all) steps.add("faces too crowded to be searched for cuts", mesh.triangles.size());
     if (!cuts.faces.empty()) {
         const double before = volume(mesh);
@@ -222,7 +224,7 @@ std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps)
                                cuts.faces.size());
         steps.add("faces replaced that cut through each other", mended).volume +=
             std::abs(volume(mesh) - before);
-        crossing = settle(mesh, settings, steps);
+        crossing = settle(mesh, tree, settings, steps);
     }
     if (crossing > 0) return fmt::format("{} parts lie partly inside others", crossing);
     if (!is_closed(mesh)) return "some of its holes cannot be closed";
@@ -258,10 +260,11 @@ void make_by_voxels(Mesh& mesh, const RepairSettings& settings, float voxel, con
     steps.add("bits dropped that voxels left", made.bits);
     steps.add("faces lost where walls are thinner than a voxel", made.thin_faces, made.thin);
     Steps own;  // of what voxels made; only what these drop is news
-    settle(solid, settings, own);
+    SharedTree tree(solid);
+    settle(solid, tree, settings, own);
     const double before = volume(solid);
     simplify(solid, mesh.triangles.size());
-    settle(solid, settings, own);
+    settle(solid, tree, settings, own);
     for (const Repair& step : own.done)
         if (step.what == "specks dropped" || step.what == "smaller parts dropped")
             steps.add(step.what, Dropped{step.count, step.volume});

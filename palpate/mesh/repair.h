@@ -2,6 +2,7 @@
 #include "palpate/base/progress.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/soundness.h"
+#include "palpate/mesh/tree.h"
 
 #include <cstddef>
 #include <string>
@@ -60,7 +61,8 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings = {}, cons
 // ---- its steps ----
 
 // Each step changes the mesh in place, drops its normals, texture coordinates and tangents if positions or
-// vertices change, and returns a count for the report. None of them ever makes a position that is not finite.
+// vertices change, and returns a count for the report. A step that takes a tree takes the mesh's own. None of
+// them ever makes a position that is not finite.
 
 /// What went with the parts that a step dropped.
 struct Dropped {
@@ -129,10 +131,12 @@ std::size_t turn_faces(Mesh& mesh);
 /// Turns over each part whose volume is negative, but for cavities: parts inside another that turn the other
 /// way. Returns how many parts were turned.
 std::size_t turn_parts(Mesh& mesh);
+std::size_t turn_parts(Mesh& mesh, SharedTree& tree);
 
 /// Drops the parts that lie inside another and are no cavity of it, so that what is left parts inside from
 /// outside. The volume stays as it is. Turn parts first.
 Nested drop_nested(Mesh& mesh);
+Nested drop_nested(Mesh& mesh, SharedTree& tree);
 
 /// Closes each loop of open edges with new faces between its vertices; returns how many loops. All edges then
 /// have as many faces one way as the other, if neighbours turned the same way before.
