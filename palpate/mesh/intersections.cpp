@@ -65,7 +65,18 @@ bool one_side_only(const std::array<int, 3>& side) {
     return std::min({side[0], side[1], side[2]}) >= 0 || std::max({side[0], side[1], side[2]}) <= 0;
 }
 
+bool boxes_are_apart(const Triangle& a, const Triangle& b) {
+    const auto low = [](const Triangle& t) {
+        return glm::min(glm::min(t.corners[0], t.corners[1]), t.corners[2]);
+    };
+    const auto high = [](const Triangle& t) {
+        return glm::max(glm::max(t.corners[0], t.corners[1]), t.corners[2]);
+    };
+    return glm::any(glm::greaterThan(low(a), high(b))) || glm::any(glm::greaterThan(low(b), high(a)));
+}
+
 bool cut(const Triangle& a, const Triangle& b, double touch) {
+    if (boxes_are_apart(a, b)) return false;
     const std::array<int, 3> of_a = sides_of(b, a, touch), of_b = sides_of(a, b, touch);
     return (!one_side_only(of_a) && any_side_passes(a, of_a, b, touch)) ||
            (!one_side_only(of_b) && any_side_passes(b, of_b, a, touch));

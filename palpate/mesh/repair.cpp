@@ -128,10 +128,10 @@ void drop_backs(Mesh& mesh, Steps& steps) {
 // What no one misses: what is there twice, or not really there, or too small.
 void clean(Mesh& mesh, const RepairSettings& settings, float tolerance, Steps& steps) {
     constexpr float seam = 1e-5f;  // of the longest side
-    std::size_t welded = 0;
-    if (tolerance > 0 || is_open(mesh)) welded = weld(mesh, tolerance);
+    const bool open = is_open(mesh);
+    std::size_t welded = tolerance > 0 || open ? weld(mesh, tolerance) : 0;
     std::size_t collapsed = drop_collapsed(mesh);
-    if (tolerance == 0 && is_open(mesh)) {
+    if (tolerance == 0 && (welded + collapsed > 0 ? is_open(mesh) : open)) {
         welded += weld_border(mesh, seam * longest_side(mesh));
         collapsed += drop_collapsed(mesh);
     }
@@ -180,8 +180,8 @@ Error no_inside(const RepairSettings& settings) {
 }
 
 // A Möbius band, not a bottle with a hole: one side only, and more border than face.
-bool is_one_sided_sheet(const Mesh& mesh) {
-    if (one_sided_parts(mesh) == 0) return false;
+bool is_one_sided_sheet(const Mesh& mesh, std::size_t one_sided) {
+    if (one_sided == 0) return false;
     const double border = soundness(mesh).longest_hole;
     const double disc = border * border / (4 * std::numbers::pi);  // the area of one with this border
     return disc > 0.25 * area_from(mesh, 0);
@@ -203,9 +203,9 @@ std::size_t settle(Mesh& mesh, SharedTree& tree, const RepairSettings& settings,
 }
 
 // Makes a solid of the mesh's own faces. Returns why that failed, or nothing.
-std::string mend_walls(Mesh& mesh, const RepairSettings& settings, Steps& steps) {
-    if (const std::size_t parts = one_sided_parts(mesh); parts > 0)
-        return fmt::format("{} part{} one side only", parts, parts == 1 ? " has" : "s have");
+std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& settings, Steps& steps) {
+    if (one_sided > 0)
+        return fmt::format("{} part{} one side only", one_sided, one_sided == 1 ? " has" : "s have");
     const std::size_t closing = mesh.triangles.size();
     const std::size_t holes = close_holes(mesh);
     steps.add("holes closed", holes, area_from(mesh, closing) / area_from(mesh, 0));
@@ -303,13 +303,14 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
         if (mesh.triangles.empty()) throw Error("no face with an area", settings.name, "look at the file");
         return std::move(steps).of(0, handy.unit());
     }
-    if (is_one_sided_sheet(mesh)) throw no_inside(settings);
+    const std::size_t one_sided = one_sided_parts(mesh);
+    if (is_one_sided_sheet(mesh, one_sided)) throw no_inside(settings);
     std::string why = "so it was asked";
     if (settings.solid == SolidBy::walls) {
         tell("mending the walls", 0.2);
         Mesh walls = mesh;
         Steps more = steps;
-        why = mend_walls(walls, settings, more);
+        why = mend_walls(walls, one_sided, settings, more);
         if (why.empty()) {
             mesh = std::move(walls);
             return std::move(more).of(volume(mesh), handy.unit());
