@@ -12,22 +12,17 @@
 namespace palpate {
 namespace {
 
-void turn_over(Mesh& mesh, const Parts& part, const std::vector<char>& turn) {
-    for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
-        if (turn[part.of[face]]) std::swap(mesh.triangles[face].y, mesh.triangles[face].z);
-}
-
 std::vector<char> inward(const Mesh& mesh, const Parts& part) {
     std::vector<char> inward;
     for (double volume : volumes(mesh, part)) inward.push_back(volume < 0);
     return inward;
 }
 
-// How many times all others wind around each part, as seen from the middles of a few of its faces; nothing if
-// they do not agree. A look from where another part touches tells nothing and does not count.
-std::vector<std::optional<int>> surroundings(const Mesh& mesh, const Parts& part, SharedTree& tree) {
+// As seen from the middles of a few of each part's faces. A look from where another part touches tells
+// nothing and does not count.
+Arrangement::Around surroundings(const Mesh& mesh, const Parts& part, const Tree& tree) {
     constexpr std::size_t most_looks = 8;
-    const WindingNumber all(tree.get());
+    const WindingNumber all(tree);
     std::vector<std::vector<Index>> faces(part.count);
     for (Index face = 0; face < part.of.size(); ++face) faces[part.of[face]].push_back(face);
     const auto around = [&](const std::vector<Index>& own) -> std::optional<int> {
@@ -46,36 +41,17 @@ std::vector<std::optional<int>> surroundings(const Mesh& mesh, const Parts& part
         if (most < least) return 0;
         return most == least ? std::optional(most) : std::nullopt;
     };
-    std::vector<std::optional<int>> result(part.count);
+    Arrangement::Around result(part.count);
     tbb::parallel_for(Index(0), part.count, [&](Index i) { result[i] = around(faces[i]); });
     return result;
 }
 
-// Which parts to turn: those that lie in no other, if they are inside out; and all, if all of these are. The
-// mesh is changed only for the while, so that its tree can be asked.
-std::vector<char> wrong_way_out(Mesh& mesh, const Parts& part, SharedTree& tree) {
-    const std::vector<char> is_inward = inward(mesh, part);
-    if (part.count < 2 || std::count(is_inward.begin(), is_inward.end(), true) == 0) return is_inward;
-    turn_over(mesh, part, is_inward);
-    const std::vector<std::optional<int>> around = surroundings(mesh, part, tree);
-    turn_over(mesh, part, is_inward);
-    std::vector<char> turn(part.count);
-    bool all = true;
-    for (Index i = 0; i < part.count; ++i) {
-        if (around[i].value_or(0) > 0) continue;
-        turn[i] = is_inward[i];
-        all &= bool(turn[i]);
-    }
-    if (all) turn.assign(part.count, true);
-    return turn;
-}
-
 // Whether each part has inside on one side and outside on the other; `crossing` counts those that have in one
 // place and not in another.
-std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, SharedTree& tree,
+std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, const Tree& tree,
                                            std::size_t& crossing) {
     const std::vector<char> is_inward = inward(mesh, part);
-    const std::vector<std::optional<int>> around = surroundings(mesh, part, tree);
+    const Arrangement::Around around = surroundings(mesh, part, tree);
     std::vector<char> does;
     crossing = 0;
     for (Index i = 0; i < part.count; ++i) {
@@ -87,9 +63,33 @@ std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, 
 
 }  // namespace
 
-std::size_t turn_parts(Mesh& mesh, SharedTree& tree) {
+void turn_over(Mesh& mesh, const Parts& part, const std::vector<char>& turn) {
+    for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
+        if (turn[part.of[face]]) std::swap(mesh.triangles[face].y, mesh.triangles[face].z);
+}
+
+std::vector<char> wrong_way_out(Mesh& mesh, const Parts& part, Arrangement& lie) {
+    const std::vector<char> is_inward = inward(mesh, part);
+    if (part.count < 2 || std::count(is_inward.begin(), is_inward.end(), true) == 0) return is_inward;
+    if (!lie.around_outward) {
+        turn_over(mesh, part, is_inward);
+        lie.around_outward = surroundings(mesh, part, lie.tree());
+        turn_over(mesh, part, is_inward);
+    }
+    std::vector<char> turn(part.count);
+    bool all = true;
+    for (Index i = 0; i < part.count; ++i) {
+        if ((*lie.around_outward)[i].value_or(0) > 0) continue;
+        turn[i] = is_inward[i];
+        all &= bool(turn[i]);
+    }
+    if (all) turn.assign(part.count, true);
+    return turn;
+}
+
+std::size_t turn_parts(Mesh& mesh, Arrangement& lie) {
     const Parts part = parts(mesh);
-    const std::vector<char> turn = wrong_way_out(mesh, part, tree);
+    const std::vector<char> turn = wrong_way_out(mesh, part, lie);
     const auto turned = std::size_t(std::count(turn.begin(), turn.end(), true));
     turn_over(mesh, part, turn);
     if (turned > 0) drop_attributes(mesh);
@@ -97,35 +97,35 @@ std::size_t turn_parts(Mesh& mesh, SharedTree& tree) {
 }
 
 std::size_t turn_parts(Mesh& mesh) {
-    SharedTree tree(mesh);
-    return turn_parts(mesh, tree);
+    Arrangement lie(mesh);
+    return turn_parts(mesh, lie);
 }
 
-Nested drop_nested(Mesh& mesh, SharedTree& tree) {
+Nested drop_nested(Mesh& mesh, Arrangement& lie) {
     Nested found;
     const Parts part = parts(mesh);
     if (part.count < 2) return found;
-    const std::vector<char> keep = part_inside_from_outside(mesh, part, tree, found.crossing);
+    const std::vector<char> keep = part_inside_from_outside(mesh, part, lie.tree(), found.crossing);
     found.dropped = keep_parts(mesh, part, keep).parts;
-    if (found.dropped > 0) tree.forget();
+    if (found.dropped > 0) lie.forget();
     return found;
 }
 
 Nested drop_nested(Mesh& mesh) {
-    SharedTree tree(mesh);
-    return drop_nested(mesh, tree);
+    Arrangement lie(mesh);
+    return drop_nested(mesh, lie);
 }
 
 Nesting nesting(const Mesh& mesh) {
     Nesting found;
     const Parts part = parts(mesh);
     Mesh turned{mesh.positions, {}, mesh.triangles};
-    SharedTree tree(turned);
-    const std::vector<char> turn = wrong_way_out(turned, part, tree);
+    Arrangement lie(turned);
+    const std::vector<char> turn = wrong_way_out(turned, part, lie);
     found.inside_out = std::size_t(std::count(turn.begin(), turn.end(), true));
     if (part.count < 2) return found;
     turn_over(turned, part, turn);
-    const std::vector<char> keep = part_inside_from_outside(turned, part, tree, found.crossing),
+    const std::vector<char> keep = part_inside_from_outside(turned, part, lie.tree(), found.crossing),
                             is_inward = inward(turned, part);
     for (Index i = 0; i < part.count; ++i) {
         found.redundant += !keep[i];

@@ -118,6 +118,7 @@ class ByStart {
 // Of all parts that wind around a part the smallest says where it lies: in matter if that winds outward, and
 // in a cavity, loose, if inward.
 void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
+    constexpr std::size_t few = 8;  // not worth a tree
     struct Around {
         Index part = none;
         double volume = std::numeric_limits<double>::max();
@@ -131,11 +132,13 @@ void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
     for (Index outer = 0; outer < part.count; ++outer) {
         const std::vector<Index> inner = by_start.held_by(outer);
         if (inner.empty()) continue;
-        const Tree tree(mesh, faces[outer]);
+        const Tree tree(mesh, inner.size() > few ? faces[outer] : std::vector<Index>());
         const WindingNumber winding(tree);
         for (Index i : inner) {
             const auto [a, b, c] = corners_of(mesh, faces[i].front());
-            const double around = winding.at((a + b + c) / 3.0);
+            const dvec3 middle = (a + b + c) / 3.0;
+            const double around =
+                inner.size() > few ? winding.at(middle) : exact_winding(mesh, faces[outer], middle);
             if (std::abs(around) < 0.5 || std::abs(volume[outer]) >= innermost[i].volume) continue;
             innermost[i] = {outer, std::abs(volume[outer]), around > 0};
         }
@@ -243,12 +246,17 @@ Pieces pieces(const Tree& tree, const Parts& part) {
 }
 
 Dropped keep_largest(Mesh& mesh) {
+    Arrangement lie(mesh);
+    return keep_largest(mesh, lie);
+}
+
+Dropped keep_largest(Mesh& mesh, Arrangement& lie) {
     const Parts part = parts(mesh);
     if (part.count < 2) return {};
-    Mesh turned{mesh.positions, {}, mesh.triangles};
-    SharedTree tree(turned);
-    turn_parts(turned, tree);
-    const Pieces found = pieces(tree.get(), part);
+    const std::vector<char> turn = wrong_way_out(mesh, part, lie);
+    turn_over(mesh, part, turn);
+    const Pieces found = pieces(lie.tree(), part);
+    turn_over(mesh, part, turn);
     if (!found.all) return {.crowded = mesh.triangles.size()};
     if (found.volume.size() < 2) return {};
     const auto largest =
@@ -256,6 +264,7 @@ Dropped keep_largest(Mesh& mesh) {
     std::vector<char> keep;
     for (Index piece : found.of) keep.push_back(piece == largest);
     Dropped dropped = keep_parts(mesh, part, keep);
+    lie.forget();
     dropped.volume = 0;
     for (Index piece = 0; piece < found.volume.size(); ++piece)
         if (piece != largest) dropped.volume += found.volume[piece];

@@ -189,14 +189,14 @@ bool is_one_sided_sheet(const Mesh& mesh, std::size_t one_sided) {
 
 // Leaves of closed parts those that part inside from outside, and what is large enough. Returns how many lie
 // partly inside others.
-std::size_t settle(Mesh& mesh, SharedTree& tree, const RepairSettings& settings, Steps& steps) {
-    tree.forget();
+std::size_t settle(Mesh& mesh, Arrangement& lie, const RepairSettings& settings, Steps& steps) {
     steps.add("faces without an area removed", drop_flat_faces(mesh));
     drop_sheets(mesh, mesh.triangles.size(), steps);
     steps.add("specks dropped", drop_specks(mesh, settings.specks));
-    if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh));
-    steps.add("parts turned right way out", turn_parts(mesh, tree));
-    const Nested nested = drop_nested(mesh, tree);
+    lie.forget();
+    if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh, lie));
+    steps.add("parts turned right way out", turn_parts(mesh, lie));
+    const Nested nested = drop_nested(mesh, lie);
     steps.add("parts dropped that lay inside another", nested.dropped);
     drop_unused(mesh);
     return nested.dropped == 0 ? nested.crossing : nesting(mesh).crossing;
@@ -212,9 +212,9 @@ std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& 
     drop_sheets(mesh, closing, steps);
     steps.add("faces dropped that lay back to back", drop_flaps(mesh));
     steps.add("vertices added to part what only touches", part_sheets(mesh));
-    SharedTree tree(mesh);
-    std::size_t crossing = settle(mesh, tree, settings, steps);
-    const Intersections cuts = intersections(tree.get());
+    Arrangement lie(mesh);
+    std::size_t crossing = settle(mesh, lie, settings, steps);
+    const Intersections cuts = intersections(lie.tree());
     if (!cuts.all) steps.add("faces too crowded to be searched for cuts", mesh.triangles.size());
     if (!cuts.faces.empty()) {
         const double before = volume(mesh);
@@ -224,7 +224,7 @@ std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& 
                                cuts.faces.size());
         steps.add("faces replaced that cut through each other", mended).volume +=
             std::abs(volume(mesh) - before);
-        crossing = settle(mesh, tree, settings, steps);
+        crossing = settle(mesh, lie, settings, steps);
     }
     if (crossing > 0) return fmt::format("{} parts lie partly inside others", crossing);
     if (!is_closed(mesh)) return "some of its holes cannot be closed";
@@ -260,11 +260,11 @@ void make_by_voxels(Mesh& mesh, const RepairSettings& settings, float voxel, con
     steps.add("bits dropped that voxels left", made.bits);
     steps.add("faces lost where walls are thinner than a voxel", made.thin_faces, made.thin);
     Steps own;  // of what voxels made; only what these drop is news
-    SharedTree tree(solid);
-    settle(solid, tree, settings, own);
+    Arrangement lie(solid);
+    settle(solid, lie, settings, own);
     const double before = volume(solid);
     simplify(solid, mesh.triangles.size());
-    settle(solid, tree, settings, own);
+    settle(solid, lie, settings, own);
     for (const Repair& step : own.done)
         if (step.what == "specks dropped" || step.what == "smaller parts dropped")
             steps.add(step.what, Dropped{step.count, step.volume});

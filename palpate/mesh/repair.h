@@ -1,8 +1,8 @@
 #pragma once
 #include "palpate/base/progress.h"
+#include "palpate/mesh/arrangement.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/soundness.h"
-#include "palpate/mesh/tree.h"
 
 #include <cstddef>
 #include <string>
@@ -61,7 +61,7 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings = {}, cons
 // ---- its steps ----
 
 // Each step changes the mesh in place, drops its normals, texture coordinates and tangents if positions or
-// vertices change, and returns a count for the report. A step that takes a tree takes the mesh's own. None of
+// vertices change, and returns a count for the report. An arrangement is the mesh's own. None of
 // them ever makes a position that is not finite.
 
 /// What went with the parts that a step dropped.
@@ -111,6 +111,7 @@ std::size_t drop_unused(Mesh& mesh);
 /// with the cavities in them (mesh/pieces.h). Parts may be open, and the wrong way out. Keeps everything
 /// where faces are too crowded to be searched for parts that touch.
 Dropped keep_largest(Mesh& mesh);
+Dropped keep_largest(Mesh& mesh, Arrangement& lie);
 
 /// The same for what need not enclose anything: keeps the connected part with the largest area.
 Dropped keep_largest_sheet(Mesh& mesh);
@@ -131,12 +132,12 @@ std::size_t turn_faces(Mesh& mesh);
 /// Turns over each part whose volume is negative, but for cavities: parts inside another that turn the other
 /// way. Returns how many parts were turned.
 std::size_t turn_parts(Mesh& mesh);
-std::size_t turn_parts(Mesh& mesh, SharedTree& tree);
+std::size_t turn_parts(Mesh& mesh, Arrangement& lie);
 
 /// Drops the parts that lie inside another and are no cavity of it, so that what is left parts inside from
 /// outside. The volume stays as it is. Turn parts first.
 Nested drop_nested(Mesh& mesh);
-Nested drop_nested(Mesh& mesh, SharedTree& tree);
+Nested drop_nested(Mesh& mesh, Arrangement& lie);
 
 /// Closes each loop of open edges with new faces between its vertices; returns how many loops. All edges then
 /// have as many faces one way as the other, if neighbours turned the same way before.

@@ -2,7 +2,6 @@
 #include "palpate/mesh/corners.h"
 #include "palpate/mesh/mesh.h"
 
-#include <optional>
 #include <vector>
 
 namespace palpate {
@@ -44,20 +43,6 @@ struct Tree {
 
  private:
     double add_faces(const Node& leaf, Plate& plate) const;
-};
-
-/// A mesh's tree for several questions in turn, made when it is first asked for. Faces may be turned over
-/// and vertices numbered anew in between; whoever drops faces calls forget().
-class SharedTree {
- public:
-    explicit SharedTree(const Mesh& mesh) : mesh_(mesh) {}
-
-    const Tree& get() { return tree_ ? *tree_ : tree_.emplace(mesh_); }
-    void forget() { tree_.reset(); }
-
- private:
-    const Mesh& mesh_;
-    std::optional<Tree> tree_;
 };
 
 }  // namespace palpate
