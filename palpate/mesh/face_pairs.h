@@ -7,15 +7,15 @@ namespace palpate {
 
 /// Goes through the pairs of leaves of a tree whose boxes are no farther apart than `reach` (m), each pair
 /// once and each leaf with itself. Those below two nodes for which skip(node, node) is true are left out.
-/// Ends early where visit(leaf, leaf) returns false; returns whether it came to the end.
+/// Ends early where visit(leaf, leaf) returns false. `waiting`: the pairs of nodes below which it looks, a
+/// node with itself meaning all within it; afterwards what is left of them.
 template <class Skip, class Visit>
-bool for_each_pair_of_leaves(const Tree& tree, float reach, Skip skip, Visit visit) {
+void for_each_pair_of_leaves(const Tree& tree, std::vector<uvec2>& waiting, float reach, Skip skip,
+                             Visit visit) {
     const auto apart = [reach](const Tree::Node& a, const Tree::Node& b) {
         return glm::any(glm::greaterThan(a.low - reach, b.high)) ||
                glm::any(glm::greaterThan(b.low - reach, a.high));
     };
-    std::vector<uvec2> waiting;  // pairs of nodes; a node with itself: all within it
-    if (!tree.nodes.empty()) waiting.push_back({0, 0});
     while (!waiting.empty()) {
         const uvec2 pair = waiting.back();
         waiting.pop_back();
@@ -29,10 +29,20 @@ bool for_each_pair_of_leaves(const Tree& tree, float reach, Skip skip, Visit vis
         } else if (b.second != 0) {
             waiting.insert(waiting.end(), {{pair.x, pair.y + 1}, {pair.x, b.second}});
         } else if (!visit(pair.x, pair.y)) {
-            return false;
+            return;
         }
     }
-    return true;
+}
+
+/// The same below the whole tree; returns whether it came to the end.
+template <class Skip, class Visit>
+bool for_each_pair_of_leaves(const Tree& tree, float reach, Skip skip, Visit visit) {
+    std::vector<uvec2> waiting;
+    if (!tree.nodes.empty()) waiting.push_back({0, 0});
+    bool ended = true;
+    for_each_pair_of_leaves(tree, waiting, reach, skip,
+                            [&](Index a, Index b) { return ended = visit(a, b); });
+    return ended;
 }
 
 /// Calls look(i, j) for the faces of a pair of leaves, by their places in `tree.faces`, each pair once.

@@ -121,6 +121,14 @@ class Planes {
     double touch_;
 };
 
+// What one processor looks at before all are asked again.
+struct Share {
+    std::vector<uvec2> waiting{};  // pairs of nodes
+    std::vector<uvec2> cuts{};     // pairs of faces
+    std::size_t looks = 0;
+};
+constexpr std::size_t shares_at_once = 64, looks_in_a_share = 20'000;
+
 // Where few faces are in the way, these and `rings` of faces around them.
 void drop_around(Mesh& mesh, const Intersections& found, int rings) {
     std::vector<char> face(mesh.triangles.size()), vertex(mesh.positions.size());
@@ -159,34 +167,36 @@ Intersections intersections(const Tree& tree, std::size_t most) {
                       [&](std::size_t i) { triangles[i] = triangle(mesh, tree.faces[i]); });
 
     const Planes planes(tree, touch);
-    std::vector<uvec2> leaves;  // pairs of them that wait to be looked at, many at once
-    std::vector<std::vector<uvec2>> cuts;
-    auto look_at_leaves = [&] {
-        cuts.resize(leaves.size());
-        tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t i) {
-            for_each_pair_of_faces(tree, leaves[i].x, leaves[i].y, [&](Index a, Index b) {
-                if (cut(triangles[a], triangles[b], touch)) cuts[i].push_back({tree.faces[a], tree.faces[b]});
-            });
-        });
-        for (std::vector<uvec2>& some : cuts) {
-            found.faces.insert(found.faces.end(), some.begin(), some.end());
-            some.clear();
-        }
-        leaves.clear();
-    };
-    constexpr std::size_t at_once = 10'000;
-    std::size_t looks = 0;
     const std::size_t most_looks = most_looks_at(mesh);
-    found.all = for_each_pair_of_leaves(
-        tree, 0, [&](Index a, Index b) { return planes.in_one_plane(a, b); },
-        [&](Index a, Index b) {
-            leaves.push_back({a, b});
-            looks += std::size_t(tree.nodes[a].count) * tree.nodes[b].count;
-            if (leaves.size() == at_once) look_at_leaves();
-            return looks <= most_looks && found.faces.size() < most;
+    std::size_t looks = 0;
+    std::vector<uvec2> waiting = {{0, 0}};
+    // All processors look, in rounds, so that it does not depend on their number where a search is given up.
+    while (!waiting.empty() && looks <= most_looks && found.faces.size() < most) {
+        std::vector<Share> shares(std::min(shares_at_once, waiting.size()));
+        for (Share& share : shares) {
+            share.waiting.push_back(waiting.back());
+            waiting.pop_back();
+        }
+        tbb::parallel_for(std::size_t(0), shares.size(), [&](std::size_t i) {
+            Share& share = shares[i];
+            for_each_pair_of_leaves(
+                tree, share.waiting, 0, [&](Index a, Index b) { return planes.in_one_plane(a, b); },
+                [&](Index leaf, Index other) {
+                    for_each_pair_of_faces(tree, leaf, other, [&](Index a, Index b) {
+                        ++share.looks;
+                        if (cut(triangles[a], triangles[b], touch))
+                            share.cuts.push_back({tree.faces[a], tree.faces[b]});
+                    });
+                    return share.looks < looks_in_a_share;
+                });
         });
-    look_at_leaves();
-    found.all &= found.faces.size() < most;
+        for (const Share& share : shares) {
+            looks += share.looks;
+            found.faces.insert(found.faces.end(), share.cuts.begin(), share.cuts.end());
+            waiting.insert(waiting.end(), share.waiting.begin(), share.waiting.end());
+        }
+    }
+    found.all = waiting.empty() && found.faces.size() < most;
     return found;
 }
 
