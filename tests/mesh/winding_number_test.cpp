@@ -3,6 +3,7 @@
 #include "tests/mesh/shapes.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 namespace palpate {
 namespace {
@@ -30,6 +31,22 @@ TEST(SolidAngle, OfACubesFaceFromItsMiddle) {
         solid_angle(dvec3(0), dvec3(-half, -half, half), dvec3(half, -half, half), dvec3(half, half, half));
     EXPECT_NEAR(sum, 1.0 / 12, 1e-15);
     EXPECT_EQ(solid_angle(dvec3(1, 0, 0), dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)), 0);
+}
+
+TEST(ExactWinding, IsTheSumOfSolidAngles) {
+    const Mesh ball = sphere(vec3(0), 1.5f, 6);  // more faces than one processor sums at once
+    std::vector<Index> all(ball.triangles.size()), half;
+    for (Index face = 0; face < all.size(); ++face) {
+        all[face] = face;
+        if (face % 2 == 0) half.push_back(face);
+    }
+    Mesh half_ball{ball.positions, {}, {}};
+    for (Index face : half) half_ball.triangles.push_back(ball.triangles[face]);
+    for (dvec3 p : points(50, 3)) {
+        EXPECT_NEAR(exact_winding(ball, all, p), exact(ball, p), 1e-9);
+        EXPECT_NEAR(exact_winding(ball, half, p), exact(half_ball, p), 1e-9);
+    }
+    EXPECT_EQ(exact_winding(ball, {}, dvec3(0)), 0);
 }
 
 TEST(WindingNumber, OfClosedSurfacesIsWhole) {
@@ -119,6 +136,51 @@ TEST(Tree, FindsTheNearestFace) {
         const double found = double(tree.distance(vec3(p), 10));
         EXPECT_TRUE(std::abs(found - exact) <= 0.01) << found << " for " << exact;
         EXPECT_EQ(tree.distance(vec3(p), 0.25f), std::min(float(found), 0.25f));
+    }
+}
+
+TEST(Tree, HalvesItsFacesBetweenTheirBoxes) {
+    for (int faces : {1, 4, 5, 6, 7, 8, 9, 100, 16'383, 16'384}) {
+        Mesh mesh = torus(1.2f, 0.5f, 128, 64);
+        mesh.triangles.resize(std::size_t(faces));
+        const Tree tree(mesh);
+        std::vector<char> found(mesh.triangles.size());
+        for (Index face : tree.faces) found[face] = true;
+        EXPECT_EQ(std::count(found.begin(), found.end(), true), faces);
+        Index leaves = 0;
+        for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+            const Tree::Node& node = tree.nodes[i];
+            if (node.second == 0) {
+                EXPECT_LE(node.count, 4u);
+                ++leaves;
+            } else {
+                ASSERT_LT(node.second, tree.nodes.size());
+                const Tree::Node &a = tree.nodes[i + 1], &b = tree.nodes[node.second];
+                EXPECT_EQ(a.first, node.first);
+                EXPECT_EQ(b.first, a.first + a.count);
+                EXPECT_EQ(a.count + b.count, node.count);
+            }
+            Bounds box;
+            for (Index f = node.first; f < node.first + node.count; ++f)
+                for (int k = 0; k < 3; ++k) box.include(mesh.positions[mesh.triangles[tree.faces[f]][k]]);
+            EXPECT_EQ(box.low, node.low);
+            EXPECT_EQ(box.high, node.high);
+        }
+        EXPECT_EQ(tree.nodes.size(), 2 * leaves - 1);
+    }
+    EXPECT_TRUE(Tree(Mesh{}).nodes.empty());
+}
+
+TEST(Tree, IsTheSameByAnyNumberOfThreads) {
+    const Mesh mesh = torus(1.2f, 0.5f, 300, 201);
+    const Tree by_many(mesh);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Tree by_one(mesh);
+    EXPECT_EQ(by_many.faces, by_one.faces);
+    ASSERT_EQ(by_many.nodes.size(), by_one.nodes.size());
+    for (std::size_t i = 0; i < by_one.nodes.size(); ++i) {
+        EXPECT_EQ(by_many.nodes[i].low, by_one.nodes[i].low);
+        EXPECT_EQ(by_many.nodes[i].high, by_one.nodes[i].high);
     }
 }
 
