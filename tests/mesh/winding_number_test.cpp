@@ -47,6 +47,10 @@ TEST(ExactWinding, IsTheSumOfSolidAngles) {
         EXPECT_NEAR(exact_winding(ball, half, p), exact(half_ball, p), 1e-9);
     }
     EXPECT_EQ(exact_winding(ball, {}, dvec3(0)), 0);
+    // Half a turn, which each face of an octahedron inside out adds to: exactly, as no angle is rounded.
+    const Mesh octahedron = inside_out(sphere(vec3(0), 1, 0));
+    std::vector<Index> eight = {0, 1, 2, 3, 4, 5, 6, 7};
+    EXPECT_EQ(exact_winding(octahedron, eight, dvec3(0)), -1);
 }
 
 TEST(WindingNumber, OfClosedSurfacesIsWhole) {
