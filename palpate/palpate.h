@@ -30,6 +30,7 @@
 #include "palpate/body/select.h"
 #include "palpate/body/simulation.h"
 #include "palpate/body/stencils.h"
+#include "palpate/mesh/arrangement.h"
 #include "palpate/mesh/clusters.h"
 #include "palpate/mesh/histogram.h"
 #include "palpate/mesh/image.h"
