@@ -3,7 +3,6 @@
 
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
-#include "palpate/base/exchange.h"
 #include "palpate/base/files.h"
 #include "palpate/base/halt.h"
 #include "palpate/base/isolated.h"
@@ -12,8 +11,9 @@
 #include "palpate/base/nearest.h"
 #include "palpate/base/progress.h"
 #include "palpate/base/realtime.h"
-#include "palpate/base/shared.h"
+#include "palpate/base/sequence_lock.h"
 #include "palpate/base/team.h"
+#include "palpate/base/triple_buffer.h"
 #include "palpate/base/vectors.h"
 #include "palpate/body/body.h"
 #include "palpate/body/cloth.h"

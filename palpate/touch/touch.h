@@ -1,6 +1,6 @@
 #pragma once
-#include "palpate/base/exchange.h"
-#include "palpate/base/shared.h"
+#include "palpate/base/sequence_lock.h"
+#include "palpate/base/triple_buffer.h"
 #include "palpate/body/dent.h"
 #include "palpate/body/patch.h"
 #include "palpate/touch/device.h"
@@ -126,13 +126,13 @@ class Touch {
 
     std::unique_ptr<Device> device_;
     const DeviceSpec spec_;
-    TouchSettings settings_;        // of whoever sets them
-    Latest<TouchSettings> wishes_;  // as they were set
-    std::vector<Feel> feels_;       // those, as far as the device bears them now
+    TouchSettings settings_;              // of whoever sets them
+    TripleBuffer<TouchSettings> wishes_;  // as they were set
+    std::vector<Feel> feels_;             // those, as far as the device bears them now
     std::vector<Friction> friction_;
     Proxy proxy_;
     Safety safety_;
-    Latest<Patch> patches_;
+    TripleBuffer<Patch> patches_;
     std::atomic<double> lost_ = 0;  // s, of the settings, for the watchdog
     Hand hand_ = {};
     bool knows_hand_ = false;
@@ -143,7 +143,7 @@ class Touch {
     std::vector<std::vector<Mark>> marks_;    // by surface; their room is made beforehand
     std::vector<std::vector<Dent>> lasting_;  // the marks' dents
     Felt told_ = {};
-    Shared<Felt> felt_;
+    SequenceLock<Felt> felt_;
     std::atomic<double> ticked_;  // s; below 0 before the first
     std::atomic<bool> stopped_ = false, ticking_ = false, begins_anew_ = false;
     std::atomic<int> stroke_ = 0, forget_from_;

@@ -4,7 +4,7 @@
 
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
-#include "palpate/base/exchange.h"
+#include "palpate/base/triple_buffer.h"
 #include "palpate/touch/devices/script.h"
 #include "palpate/touch/devices/virtual_hand.h"
 #include "tests/shapes.h"
@@ -131,28 +131,28 @@ TEST(TouchLoop, SurfacesComeAndDentsGoWhileItRuns) {
     looks_on.join();
 }
 
-TEST(Latest, TheReaderGetsWholeValuesAndTheNewestInTheEnd) {
+TEST(TripleBuffer, TheReaderGetsWholeValuesAndTheNewestInTheEnd) {
     struct Pair {
         long a = 0, b = 0;
     };
-    Latest<Pair> latest;
+    TripleBuffer<Pair> buffer;
     constexpr long last = 200'000;
     std::thread writes([&] {
         for (long i = 1; i <= last; ++i) {
-            latest.draft() = {i, -i};
-            latest.publish();
+            buffer.draft() = {i, -i};
+            buffer.publish();
         }
     });
     long seen = 0;
     while (seen < last) {
-        if (!latest.fetch()) continue;
-        const Pair& pair = latest.shown();
+        if (!buffer.fetch()) continue;
+        const Pair& pair = buffer.shown();
         ASSERT_EQ(pair.a, -pair.b);
         ASSERT_GT(pair.a, seen);
         seen = pair.a;
     }
     writes.join();
-    EXPECT_FALSE(latest.fetch());
+    EXPECT_FALSE(buffer.fetch());
 }
 
 }  // namespace

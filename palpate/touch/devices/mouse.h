@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/base/shared.h"
+#include "palpate/base/sequence_lock.h"
 #include "palpate/scene/camera.h"
 #include "palpate/touch/device.h"
 #include "palpate/touch/devices/damped_spring.h"
@@ -72,7 +72,7 @@ class Mouse final : public Device {
     std::vector<PointerEvent> replay_;
     std::size_t next_ = 0;  // of replay_
     Told telling_;          // the window's thread's own
-    Shared<Told> shared_;
+    SequenceLock<Told> shared_;
     Told told_;  // what the hand follows
 
     std::optional<double> start_;  // of the loop's clock

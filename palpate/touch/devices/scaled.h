@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/base/shared.h"
+#include "palpate/base/sequence_lock.h"
 #include "palpate/touch/devices/decorator.h"
 
 namespace palpate {
@@ -39,7 +39,7 @@ class Scaled final : public Decorator {
     Scale first_;
     float peak_force_ = 0;  // N, at the device
     Set setting_;           // of the thread that sets
-    Shared<Set> shared_;
+    SequenceLock<Set> shared_;
     Set used_;
 };
 

@@ -3,11 +3,11 @@
 
 namespace palpate {
 
-/// Hands values from one thread to another, of which the reader wants the newest. Neither ever waits,
+/// Passes values from one thread to another, of which the reader wants the newest. Neither ever waits,
 /// whatever the other does: there are three places, one that is written, one that is read, and the newest
 /// between.
 template <class T>
-class Latest {
+class TripleBuffer {
  public:
     /// The writer's own place, with what it held two or three values ago; fill it, then publish() it.
     T& draft() { return places_[draft_]; }

@@ -9,14 +9,14 @@
 namespace palpate {
 
 /// A plain struct that one thread writes and any others read, whole. The writer never waits: what a reader
-/// read while it was at it, the reader drops (a sequence lock). Its words are atomic and ordered one by one,
+/// read while it was at it, the reader drops. Its words are atomic and ordered one by one,
 /// without fences, so that this is exact in C++'s terms and not only on processors that happen to do it.
 template <class T>
-class Shared {
+class SequenceLock {
     static_assert(std::is_trivially_copyable_v<T>, "what is shared is copied word by word");
 
  public:
-    explicit Shared(const T& value = T()) noexcept { store(value); }
+    explicit SequenceLock(const T& value = T()) noexcept { store(value); }
 
     /// By the one writer only.
     void store(const T& value) noexcept {

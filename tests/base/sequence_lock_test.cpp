@@ -1,4 +1,4 @@
-#include "palpate/base/shared.h"
+#include "palpate/base/sequence_lock.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ struct Odd {  // no whole number of words, and with a gap
     std::array<short, 5> more{};
 };
 
-TEST(Shared, KeepsWhatWasStored) {
-    Shared<Odd> shared(Odd{'b', 2.5, {1, 2, 3, 4, 5}});
+TEST(SequenceLock, KeepsWhatWasStored) {
+    SequenceLock<Odd> shared(Odd{'b', 2.5, {1, 2, 3, 4, 5}});
     EXPECT_EQ(shared.load().letter, 'b');
     shared.store({'c', -1.0 / 3, {5, 4, 3, 2, 1}});
     Odd now;
@@ -24,11 +24,11 @@ TEST(Shared, KeepsWhatWasStored) {
     EXPECT_EQ(now.more, (std::array<short, 5>{5, 4, 3, 2, 1}));
 }
 
-TEST(Shared, ReadersNeverSeeHalfAWriting) {
+TEST(SequenceLock, ReadersNeverSeeHalfAWriting) {
     struct Many {
         std::array<std::uint64_t, 37> same{};
     };
-    Shared<Many> shared;
+    SequenceLock<Many> shared;
     std::atomic<bool> over = false;
     std::atomic<int> torn = 0, backward = 0, reads = 0;
     auto read = [&] {
