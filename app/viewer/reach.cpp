@@ -274,6 +274,7 @@ void Viewer::follow_device() {
                       !experiment_->models().models.empty() &&
                       (options.mode == Mode::pull || options.mode == Mode::press);
     const Felt felt = acts ? feeling_->felt() : Felt{};
+    const vec3 place(felt.pose.place);
     const bool presses = options.mode == Mode::press;
     const bool lets_go = !acts || (!presses && felt.buttons & 1);
     if (device_hold_ && (lets_go || device_hold_->presses() != presses || !device_hold_->fits(*experiment_)))
@@ -281,14 +282,14 @@ void Viewer::follow_device() {
     if (lets_go || felt.time == 0) return;
     std::optional<Hold> begun;
     if (!device_hold_ && presses) {
-        begun = Hold::tip(*experiment_, 0, felt.hand, options.tip);
+        begun = Hold::tip(*experiment_, 0, place, options.tip);
     } else if (!device_hold_ && felt.count > felt.lasting) {
         const auto touched = std::size_t(felt.surfaces[std::size_t(felt.lasting)]);
         if (touched < experiment_->models().models.size())
-            begun = Hold::pulling(*experiment_, {.surface = touched, .place = felt.hand});
+            begun = Hold::pulling(*experiment_, {.surface = touched, .place = place});
     }
     if (begun && room_for(*begun)) device_hold_ = begun;
-    if (device_hold_) device_hold_->go_to(felt.hand);
+    if (device_hold_) device_hold_->go_to(place);
 }
 
 std::vector<Hold> Viewer::holds() const {

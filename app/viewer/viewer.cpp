@@ -359,12 +359,13 @@ Traces Viewer::traces() const {
     }
     if (!feeling_ || options.mode != Mode::dent) return traces;
     const Felt& felt = feeling_->felt();
+    const vec3 hand(felt.pose.place);
     // A small one, or it would hide the dent; the controls draw a ring as large as the tip.
     traces.balls.push_back({felt.proxy, 0.25f * options.tip, proxy_colour});
-    if (glm::distance(felt.hand, felt.proxy) > 0.05f * options.tip) {
-        traces.balls.push_back({felt.hand, 0.2f * options.tip, hand_colour});
+    if (glm::distance(hand, felt.proxy) > 0.05f * options.tip) {
+        traces.balls.push_back({hand, 0.2f * options.tip, hand_colour});
         traces.lines.push_back(uvec2(traces.points.size(), traces.points.size() + 1));
-        traces.points.insert(traces.points.end(), {felt.proxy, felt.hand});
+        traces.points.insert(traces.points.end(), {felt.proxy, hand});
     }
     for (std::size_t s = 0; s < experiment_->play().skins().size(); ++s)
         traces.dents.push_back(felt.dents_of(int(s)));

@@ -91,8 +91,10 @@ Solid solid(const DistanceField& field) {
 std::vector<Pose> poses(const ColliderRecipe& recipe, vec3 pivot) {
     if (recipe.path.empty()) return {Pose{}};
     std::vector<Pose> all;
-    for (const Waypoint& waypoint : recipe.path)
-        all.push_back({pivot + waypoint.position, turn(waypoint.rotation)});
+    for (const Waypoint& waypoint : recipe.path) {
+        all.push_back(pose(waypoint));
+        all.back().place += dvec3(pivot);
+    }
     return all;
 }
 
@@ -165,8 +167,8 @@ void Seen::add(const Bounds& thing) {
 // Where the bodies would stand on it.
 void Seen::add(const Plane& plane, const Pose& at) {
     if (box.empty()) return;
-    const vec3 normal = at.rotation * plane.normal;
-    const float offset = plane.offset + glm::dot(normal, at.position);
+    const vec3 normal(at.turn * dvec3(plane.normal));
+    const float offset = plane.offset + glm::dot(normal, vec3(at.place));
     for (vec3 corner : corners(box)) {
         const vec3 foot = corner - (glm::dot(normal, corner) - offset) * normal;
         if (holds(reach_, foot)) points.push_back(foot);
@@ -180,7 +182,7 @@ void Seen::add_colliders(const Scene& scene, const Models& made) {
             if (const auto* plane = std::get_if<Plane>(&shape)) add(*plane, at);
             const Solid rest = std::visit([](const auto& one) { return solid(one); }, shape);
             Bounds posed;
-            for (vec3 p : rest.points) posed.include(at.position + at.rotation * p);
+            for (vec3 p : rest.points) posed.include(vec3(at.of(dvec3(p))));
             if (!posed.empty()) add(grown(posed, rest.around));
         }
 }

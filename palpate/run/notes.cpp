@@ -166,13 +166,13 @@ std::size_t held_at_start(const Scene& scene, const Models& made, std::size_t co
     constexpr float to_speak_of = 0.1f;  // of the spacing: less is lifted out without harm
     const Collider& one = made.simulation.colliders[collider];
     const Path& path = scene.colliders[collider].path;
-    const Pose at = path.empty() ? Pose{vec3(0), mat3(1)} : pose(path, 0);
-    const vec3 origin = made.pivots[collider] + at.position;
+    const Pose at = path.empty() ? Pose{} : pose(path, 0);
+    const dvec3 origin = dvec3(made.pivots[collider]) + at.place;
     const Body& nodes = made.models[body].body;
     std::size_t held = 0;
     for (std::size_t i = 0; i < nodes.count(); ++i) {
         if (!(nodes.inverse_mass[i] > 0)) continue;
-        const vec3 p = glm::transpose(at.rotation) * (nodes.positions[i] - origin);
+        const vec3 p(glm::conjugate(at.turn) * (dvec3(nodes.positions[i]) - origin));
         const float deep = std::visit([&](const auto& shape) { return depth(shape, p); }, one.shape);
         held += deep + one.margin > to_speak_of * nodes.spacing;
     }

@@ -6,7 +6,6 @@
 #include "palpate/run/run.h"
 
 #include <fmt/format.h>
-#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +42,7 @@ std::vector<vec3> places(const MovedNodes& moved, const Path& path, const Body& 
     std::vector<vec3> to;
     for (int node : moved.nodes) {
         const vec3 rest = body.positions[std::size_t(node)];
-        to.push_back(moved.about + at.position + at.rotation * (rest - moved.about));
+        to.push_back(moved.about + vec3(at.of(dvec3(rest - moved.about))));
     }
     return to;
 }
@@ -64,10 +63,10 @@ struct Play::Acting {
 
 Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double seconds) {
     Motion motion;
-    motion.position = pivot + from.position;
-    motion.rotation = from.rotation;
-    motion.velocity = (to.position - from.position) / float(seconds);
-    glm::dquat way = glm::quat_cast(glm::dmat3(to.rotation) * glm::transpose(glm::dmat3(from.rotation)));
+    motion.position = pivot + vec3(from.place);
+    motion.rotation = mat3(glm::mat3_cast(from.turn));
+    motion.velocity = vec3((to.place - from.place) / seconds);
+    dquat way = to.turn * glm::conjugate(from.turn);
     if (way.w < 0) way = -way;
     const dvec3 axis(way.x, way.y, way.z);
     if (const double sine = glm::length(axis); sine > 0)

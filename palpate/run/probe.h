@@ -31,7 +31,7 @@ class Probe {
     /// The dents in a surface at a time; without those that spring back if the tip is no longer there.
     std::vector<Dent> dents(int surface, double time) const;
 
-    vec3 centre() const { return felt_.hand; }  // m
+    vec3 centre() const { return vec3(felt_.pose.place); }  // m
     double force() const { return force_; }     // N, mean over the last call
     double depth() const { return depth_; }     // m, at its end
 

@@ -53,6 +53,17 @@ bool within(const Path& path, double time) {
 
 namespace {
 
+dmat3 turned(vec3 degrees) {
+    const dvec3 angle = glm::radians(dvec3(degrees));
+    glm::dmat4 turned(1);
+    for (int axis : {2, 1, 0}) {
+        dvec3 about(0);
+        about[axis] = 1;
+        turned = glm::rotate(turned, angle[axis], about);
+    }
+    return dmat3(turned);
+}
+
 // The path at a time, rotations still in degrees.
 Waypoint at(const Path& path, double time) {
     const auto next = std::upper_bound(path.begin(), path.end(), time,
@@ -69,21 +80,11 @@ Waypoint at(const Path& path, double time) {
 
 vec3 position(const Path& path, double time) { return at(path, time).position; }
 
-Pose pose(const Path& path, double time) {
-    const Waypoint here = at(path, time);
-    return {here.position, turn(here.rotation)};
-}
+Pose pose(const Path& path, double time) { return pose(at(path, time)); }
 
-mat3 turn(vec3 degrees) {
-    const dvec3 angle = glm::radians(dvec3(degrees));
-    glm::dmat4 turned(1);
-    for (int axis : {2, 1, 0}) {
-        dvec3 about(0);
-        about[axis] = 1;
-        turned = glm::rotate(turned, angle[axis], about);
-    }
-    return mat3(turned);
-}
+Pose pose(const Waypoint& point) { return {dvec3(point.position), glm::quat_cast(turned(point.rotation))}; }
+
+mat3 turn(vec3 degrees) { return mat3(turned(degrees)); }
 
 Path make_path(const std::vector<std::vector<double>>& rows, Rows kind, const RowFails& fail) {
     const bool poses = kind == Rows::poses;

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/base/vectors.h"
+#include "palpate/base/pose.h"
 
 #include <filesystem>
 #include <functional>
@@ -28,12 +28,9 @@ void check(const Path& path, const std::string& whose);
 bool within(const Path& path, double time);
 vec3 position(const Path& path, double time);
 
-/// Where a thing is that was at the origin: a point p of it is at position + rotation · p.
-struct Pose {
-    vec3 position = vec3(0);  // m
-    mat3 rotation = mat3(1);
-};
+/// Where a thing is then that was at the origin.
 Pose pose(const Path& path, double time);
+Pose pose(const Waypoint& point);
 
 /// Turns by degrees about x, then y, then z.
 mat3 turn(vec3 degrees);

@@ -16,25 +16,25 @@ namespace {
 constexpr int longest_tick = 20;  // ms, that ticks under way are waited for, all together
 
 // A handler of signals finds them only at places that do not move.
-std::array<std::atomic<Touch*>, 256> hands{};
+std::array<std::atomic<Touch*>, 256> touches{};
 std::atomic<int> visitors = 0;  // threads that may use one of them just now
 
 template <class Act>
-void for_each_hand(const Act& act) {
-    for (auto& place : hands)
-        if (Touch* hand = place.load()) act(*hand);
+void for_each_touch(const Act& act) {
+    for (auto& place : touches)
+        if (Touch* touch = place.load()) act(*touch);
 }
 
 }  // namespace
 
 void let_go_of_all() noexcept {
     ++visitors;
-    for_each_hand([](Touch& hand) { hand.let_go(); });
+    for_each_touch([](Touch& touch) { touch.let_go(); });
     // A tick that was under way may have written after that what it had computed before.
     int ms = 0;
-    for_each_hand([&](Touch& hand) {
-        for (; ms < longest_tick && hand.is_ticking(); ++ms) poll(nullptr, 0, 1);
-        hand.let_go();
+    for_each_touch([&](Touch& touch) {
+        for (; ms < longest_tick && touch.is_ticking(); ++ms) poll(nullptr, 0, 1);
+        touch.let_go();
     });
     --visitors;
 }
@@ -43,15 +43,15 @@ void let_go_at_halt() {
     on_halt([](Halt) noexcept { let_go_of_all(); });
 }
 
-void add_hand(Touch& hand) {
-    for (auto& place : hands)
-        if (Touch* nobody = nullptr; place.compare_exchange_strong(nobody, &hand)) return;
-    throw Error("too many hands at once", hand.device().name, "end some that are not needed any more");
+void add_touch(Touch& touch) {
+    for (auto& place : touches)
+        if (Touch* nobody = nullptr; place.compare_exchange_strong(nobody, &touch)) return;
+    throw Error("too many devices at once", touch.device().name, "end some that are not needed any more");
 }
 
-void remove_hand(Touch& hand) noexcept {
-    for (auto& place : hands)
-        if (Touch* same = &hand; place.compare_exchange_strong(same, nullptr)) break;
+void remove_touch(Touch& touch) noexcept {
+    for (auto& place : touches)
+        if (Touch* same = &touch; place.compare_exchange_strong(same, nullptr)) break;
     while (visitors > 0) std::this_thread::yield();
 }
 

@@ -17,8 +17,8 @@ void let_go_of_all() noexcept;
 // ---- for Touch ----
 
 /// Throws Error if there are more hands than any desk has.
-void add_hand(Touch& hand);
+void add_touch(Touch& touch);
 /// When this returns, nobody holds on to it.
-void remove_hand(Touch& hand) noexcept;
+void remove_touch(Touch& touch) noexcept;
 
 }  // namespace palpate

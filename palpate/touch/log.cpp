@@ -12,10 +12,12 @@
 namespace palpate {
 namespace {
 
-constexpr std::string_view version = "# palpate log 1";
+constexpr std::string_view version = "# palpate log ";
 constexpr std::string_view device = "# device ";
 constexpr std::string_view rate = "# rate ";
-constexpr std::string_view columns = "now,time,x,y,z,buttons,placed,fx,fy,fz";
+// Of version 2; and of version 1, which knew no turns.
+constexpr std::string_view columns = "now,time,x,y,z,qw,qx,qy,qz,buttons,placed,fx,fy,fz,tx,ty,tz";
+constexpr std::string_view columns_without_turns = "now,time,x,y,z,buttons,placed,fx,fy,fz";
 
 // Takes a text apart line by line, and a line number by number.
 class LogLines {
@@ -34,6 +36,11 @@ class LogLines {
     }
 
     bool blank() const { return line_.find_first_not_of(" \t") == line_.npos; }
+
+    // The next line, which has to be this.
+    void exactly(std::string_view text) {
+        if (!heading(text).empty()) fail(fmt::format("is not \"{}\"", text));
+    }
 
     // The rest of the next line, which has to begin so.
     std::string_view heading(std::string_view begin) {
@@ -82,30 +89,55 @@ void write_log(const std::filesystem::path& file, const Log& log) {
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     write_file(file, [&](std::FILE* out) {
-        fmt::print(out, "{}\n{}{}\n{}{}\n{}\n", version, device, name, rate, log.rate, columns);
-        for (const Tick& t : log.ticks)
-            fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", t.now, t.hand.time, t.hand.position.x,
-                       t.hand.position.y, t.hand.position.z, t.hand.buttons, t.hand.placed, t.force.x,
-                       t.force.y, t.force.z);
+        fmt::print(out, "{}2\n{}{}\n{}{}\n{}\n", version, device, name, rate, log.rate, columns);
+        for (const Tick& t : log.ticks) {
+            const auto& [place, turn] = t.state.pose;
+            const auto& [force, torque] = t.wrench;
+            fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", t.now, t.state.time,
+                       place.x, place.y, place.z, turn.w, turn.x, turn.y, turn.z, t.state.buttons,
+                       t.state.placed, force.x, force.y, force.z, torque.x, torque.y, torque.z);
+        }
     });
 }
 
+namespace {
+
+Tick numbers(LogLines& lines) {
+    Tick t;
+    auto& [place, turn] = t.state.pose;
+    auto& [force, torque] = t.wrench;
+    lines.numbers(t.now, t.state.time, place.x, place.y, place.z, turn.w, turn.x, turn.y, turn.z,
+                  t.state.buttons, t.state.placed, force.x, force.y, force.z, torque.x, torque.y, torque.z);
+    return t;
+}
+
+// Places were single then.
+Tick numbers_without_turns(LogLines& lines) {
+    Tick t;
+    vec3 place, &force = t.wrench.force;
+    lines.numbers(t.now, t.state.time, place.x, place.y, place.z, t.state.buttons, t.state.placed, force.x,
+                  force.y, force.z);
+    t.state.pose.place = dvec3(place);
+    return t;
+}
+
+}  // namespace
+
 Log parse_log(std::string_view text, const std::string& name) {
     LogLines lines(text, name);
-    if (!lines.heading(version).empty()) lines.fail(fmt::format("is not \"{}\"", version));
+    const std::string_view number = lines.heading(version);
+    if (number != "1" && number != "2") lines.fail("is a version that is not 1 or 2");
+    const bool turns = number == "2";
     Log log;
     log.device = lines.heading(device);
     lines.heading(rate);
     lines.numbers(log.rate);
     if (!(log.rate > 0 && std::isfinite(log.rate))) lines.fail("has a rate that is not above 0");
-    if (!lines.heading(columns).empty()) lines.fail(fmt::format("is not \"{}\"", columns));
+    lines.exactly(turns ? columns : columns_without_turns);
     while (lines.next()) {
         if (lines.blank()) continue;
-        Tick t;
-        vec3 &at = t.hand.position, &force = t.force;
-        lines.numbers(t.now, t.hand.time, at.x, at.y, at.z, t.hand.buttons, t.hand.placed, force.x, force.y,
-                      force.z);
-        if (!std::isfinite(t.now) || !std::isfinite(t.hand.time)) lines.fail("has a time that is no number");
+        const Tick t = turns ? numbers(lines) : numbers_without_turns(lines);
+        if (!std::isfinite(t.now) || !std::isfinite(t.state.time)) lines.fail("has a time that is no number");
         if (!log.ticks.empty() && t.now < log.ticks.back().now) lines.fail("goes back in time");
         log.ticks.push_back(t);
     }

@@ -8,11 +8,11 @@
 
 namespace palpate {
 
-/// What a device said at one tick of the loop, and the force that it was told then.
+/// What a device said at one tick of the loop, and what it was told then.
 struct Tick {
     double now = 0;  // s, on the loop's clock
-    Hand hand;
-    vec3 force = vec3(0);  // N
+    DeviceState state;
+    Wrench wrench;
 };
 
 /// What went to and fro between a loop and a device; docs/devices.md describes the file.

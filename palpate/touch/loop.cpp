@@ -17,20 +17,20 @@ constexpr double longest_spin = 0.001;           // s: more would leave nothing 
 
 }  // namespace
 
-TouchLoop::TouchLoop(std::vector<Touch*> hands, LoopSettings settings)
-    : hands_(std::move(hands)), settings_(settings) {
+TouchLoop::TouchLoop(std::vector<Touch*> touches, LoopSettings settings)
+    : touches_(std::move(touches)), settings_(settings) {
     if (!(settings.rate >= slowest && settings.rate <= fastest))
         throw Error(fmt::format("a rate of {} Hz", settings.rate), "the haptic loop",
                     fmt::format("choose one from {} to {}", slowest, fastest));
     if (!(settings.spin >= 0 && settings.spin <= longest_spin))
         throw Error(fmt::format("a spin of {} s", settings.spin), "the haptic loop",
                     fmt::format("choose one from 0 to {}", longest_spin));
-    for (Touch* hand : hands_) {
-        if (!hand) throw Error("a hand that is not there", "the haptic loop", "make it before");
-        paced_ |= hand->device().paces;
+    for (Touch* touch : touches_) {
+        if (!touch) throw Error("a touch that is not there", "the haptic loop", "make it before");
+        paced_ |= touch->device().paces;
     }
     if (!paced_)
-        for (Touch* hand : hands_) hand->expect_rate(settings.rate);
+        for (Touch* touch : touches_) touch->expect_rate(settings.rate);
     watchdog_ = std::thread([this] { watch(); });  // before there is anything to watch
     try {
         loop_ = std::thread([this] { run(); });
@@ -46,11 +46,11 @@ TouchLoop::~TouchLoop() { end(); }
 // The watchdog last: the loop may hang in a device on its way out.
 void TouchLoop::end() {
     ends_.store(true, std::memory_order_release);
-    for (Touch* hand : hands_) hand->let_go();
+    for (Touch* touch : touches_) touch->let_go();
     if (loop_.joinable()) loop_.join();
     watch_ends_.store(true, std::memory_order_release);
     watchdog_.join();
-    for (Touch* hand : hands_) hand->let_go();
+    for (Touch* touch : touches_) touch->let_go();
 }
 
 Granted TouchLoop::granted() const { return granted_; }
@@ -81,9 +81,9 @@ void TouchLoop::run() {
 
 bool TouchLoop::tick(double time) {
     bool all = true;
-    for (Touch* hand : hands_) {
+    for (Touch* touch : touches_) {
         double proxy = 0;
-        all &= hand->tick(time, &proxy);
+        all &= touch->tick(time, &proxy);
         timing_.proxy.add(proxy);
     }
     return all;
@@ -100,8 +100,8 @@ void TouchLoop::watch() {
     while (!watch_ends_.load(std::memory_order_acquire)) {
         sleep_until(now() + watch_every);
         const double time = now();
-        for (Touch* hand : hands_)
-            if (hand->watch(time)) stalls_.fetch_add(1, std::memory_order_relaxed);
+        for (Touch* touch : touches_)
+            if (touch->watch(time)) stalls_.fetch_add(1, std::memory_order_relaxed);
     }
 }
 

@@ -19,18 +19,18 @@ struct LoopSettings {
 struct LoopTiming {
     Durations periods;                           // from tick to tick, s of the clock
     Durations work;                              // of a tick, s of the processor's time on this thread
-    Durations proxy;                             // of the proxy alone, likewise; one for each hand
+    Durations proxy;                             // of the proxy alone, likewise; one for each touch
     std::atomic<std::uint64_t> missed = 0;       // ticks that were left out because their time had gone by
     std::atomic<std::uint64_t> longest_run = 0;  // of those, one after the other
 };
 
-/// Ticks hands on a thread of its own, a thousand times a second by absolute deadlines, with whatever
+/// Ticks touches on a thread of its own, a thousand times a second by absolute deadlines, with whatever
 /// priority the system grants; and on a second one a watchdog, which lets go of them if the first gets stuck.
-/// Both end with this object, and the hands' devices are stopped. The hands must outlive it.
+/// Both end with this object, and the devices are stopped. The touches must outlive it.
 class TouchLoop {
  public:
-    /// Throws Error if the rate or the spin is out of bounds, or if one of the hands is not there.
-    explicit TouchLoop(std::vector<Touch*> hands, LoopSettings settings = {});
+    /// Throws Error if the rate or the spin is out of bounds, or if one of the touches is not there.
+    explicit TouchLoop(std::vector<Touch*> touches, LoopSettings settings = {});
     ~TouchLoop();
     TouchLoop(const TouchLoop&) = delete;
     TouchLoop& operator=(const TouchLoop&) = delete;
@@ -52,7 +52,7 @@ class TouchLoop {
     void end();
     void wait_for(double time) const;
 
-    const std::vector<Touch*> hands_;
+    const std::vector<Touch*> touches_;
     const LoopSettings settings_;
     bool paced_ = false;
     LoopTiming timing_;

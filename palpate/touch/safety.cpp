@@ -15,9 +15,8 @@ bool is_finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std
 
 bool is_factor(float factor) { return factor > 0 && std::isfinite(factor); }
 
-bool is_sound(dvec3 wanted, const Hand& hand) {
-    return is_finite(wanted) && is_finite(dvec3(hand.position)) && std::isfinite(hand.time) &&
-           is_factor(hand.forces) && is_factor(hand.motion);
+bool is_finite(const Wrench& wrench) {
+    return is_finite(dvec3(wrench.force)) && is_finite(dvec3(wrench.torque));
 }
 
 dvec3 no_longer_than(double most, dvec3 v) {
@@ -26,6 +25,12 @@ dvec3 no_longer_than(double most, dvec3 v) {
 }
 
 }  // namespace
+
+bool is_sound(const DeviceState& state) {
+    const bool turned = std::abs(glm::length(state.pose.turn) - 1) < 0.01;
+    return is_finite(state.pose.place) && turned && std::isfinite(state.time) && is_factor(state.forces) &&
+           is_factor(state.motion);
+}
 
 void check(const SafetySettings& settings, const std::string& device) {
     constexpr double any = std::numeric_limits<double>::max();
@@ -40,7 +45,7 @@ void check(const SafetySettings& settings, const std::string& device) {
     const Setting all[] = {{"peak_force", s.peak_force},
                            {"lasting_force", s.lasting_force},
                            {"warm_up", s.warm_up},
-                           {"fall", s.fall, false, second},
+                           {"slew_time", s.slew_time, false, second},
                            {"small_force", s.small_force},
                            {"calm", s.calm},
                            {"ramp", s.ramp},
@@ -61,17 +66,29 @@ void check(const SafetySettings& settings, const std::string& device) {
 }
 
 void check(const DeviceSpec& device) {
-    const std::pair<const char*, float> all[] = {{"peak_force", device.peak_force},
-                                                 {"lasting_force", device.lasting_force},
-                                                 {"stiffness", device.stiffness}};
-    for (const auto& [name, value] : all)
-        if (!(value > 0) || !std::isfinite(value))
-            throw Error(fmt::format("DeviceSpec::{} is {}", name, value), device.name,
+    struct Field {
+        const char* name;
+        float value;
+        bool may_be_zero = false;
+    };
+    // A device that turns somebody says for how long it can.
+    const bool turns_nobody = device.peak_torque == 0 && device.lasting_torque == 0;
+    const Field all[] = {{"workspace", device.workspace},
+                         {"peak_force", device.peak_force},
+                         {"lasting_force", device.lasting_force},
+                         {"peak_torque", device.peak_torque, turns_nobody},
+                         {"lasting_torque", device.lasting_torque, turns_nobody},
+                         {"stiffness", device.stiffness}};
+    for (const Field& one : all)
+        if (!(one.value > 0 || one.may_be_zero) || !std::isfinite(one.value))
+            throw Error(fmt::format("DeviceSpec::{} is {}", one.name, one.value), device.name,
                         "its driver has to give a finite one above zero");
 }
 
 Safety::Safety(const DeviceSpec& device, const SafetySettings& settings, const Warmth& warmth)
-    : device_peak_(device.peak_force), device_lasting_(device.lasting_force), warmth_(warmth) {
+    : device_force_{device.peak_force, device.lasting_force},
+      device_torque_{device.peak_torque, device.lasting_torque},
+      warmth_(warmth) {
     check(device);
     check(settings, device.name);
     const bool known = warmth.square >= 0 && std::isfinite(warmth.square) && std::isfinite(warmth.time);
@@ -82,11 +99,14 @@ Safety::Safety(const DeviceSpec& device, const SafetySettings& settings, const W
 void Safety::set(const SafetySettings& settings) {
     auto no_more_than = [](double device, double wish) { return wish > 0 ? std::min(wish, device) : device; };
     settings_ = settings;
-    peak_ = no_more_than(device_peak_, settings.peak_force);
-    lasting_ = std::min(peak_, no_more_than(device_lasting_, settings.lasting_force));
+    force_.peak = no_more_than(device_force_.peak, settings.peak_force);
+    force_.lasting = std::min(force_.peak, no_more_than(device_force_.lasting, settings.lasting_force));
+    torque_.peak = device_torque_.peak * force_.peak / device_force_.peak;
+    torque_.lasting = std::min(torque_.peak, device_torque_.lasting * force_.lasting / device_force_.lasting);
 }
 
-dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surface, double now) {
+Wrench Safety::allow(const Wrench& wanted, const DeviceState& state, dvec3 velocity, dvec3 surface,
+                     double now) {
     const double seconds = time_ ? now - *time_ : 0;
     time_ = now;
     warm(now);
@@ -95,33 +115,55 @@ dvec3 Safety::allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surfac
         let_go(Held::stalled);
         return none();
     }
-    double fresh = 0;
     if (!is_finite(velocity)) velocity = dvec3(0);
     if (!is_finite(surface)) surface = dvec3(0);
-    if (is_sound(wanted, hand)) {
-        watch(hand, surface);
+    const bool sound = is_finite(wanted) && is_sound(state);
+    // The limits are the device's, so they are in its newtons and its metres.
+    const double forces = sound ? double(state.forces) : 1;
+    const double torques = sound ? forces / double(state.motion) : 1;
+    double fresh = 0;
+    if (sound) {
+        watch(state, surface);
         // One from the future has a clock of its own, by which it would never grow old.
-        const double age = now - hand.time;
+        const double age = now - state.time;
         if (age >= -settings_.fresh)
             fresh = std::clamp(1 - (age - settings_.fresh) / settings_.fade, 0.0, 1.0);
         if (!(fresh > 0)) let_go(Held::stale);
     } else {
         let_go(Held::not_finite);
-        wanted = dvec3(0);
     }
-    gain_ = fresh > 0 ? grown(glm::length(wanted), now) : 0;
-    dvec3 force = passive(gain_ * fresh * wanted, velocity - surface, seconds);
-    // The limits are the device's, so they are in newtons there.
-    const double there = is_factor(hand.forces) ? double(hand.forces) : 1;
-    force = no_longer_than(budget() / there, force);
-    force = force_ + no_longer_than(peak_ / there / settings_.fall * seconds, force - force_);
-    force_ = no_longer_than(peak_ / there, force);
-    if (!is_finite(force_)) {  // numbers so large that they are none together
+    gain_ = fresh > 0 ? grown(effort(wanted, 1, 1), now) : 0;
+    const double part = gain_ * fresh;  // 0 of what is not finite, too
+    auto some_of = [part](vec3 all) { return part > 0 ? part * dvec3(all) : dvec3(0); };
+    const dvec3 force = passive(some_of(wanted.force), velocity - surface, seconds);
+    allowed_ = {limited(force_, force, allowed_.force, forces, seconds),
+                limited(torque_, some_of(wanted.torque), allowed_.torque, torques, seconds)};
+    if (!is_finite(allowed_)) {  // numbers so large that they are none together
         let_go(Held::not_finite);
         return none();
     }
-    pushes_ = glm::length(force_) * there;
-    return force_;
+    effort_ = effort(allowed_, forces, torques);
+    return allowed_;
+}
+
+// No more than the peak, nor than what the motors' warmth leaves of it, and no faster there than the slew
+// rate. A motor's heat goes with the square of its force: the mean of that is held to what it can stand. From
+// four fifths of it on the peak comes down, so that force does not break off. `scale`: to the device's units.
+vec3 Safety::limited(const Limits& limits, dvec3 wanted, vec3 before, double scale, double seconds) const {
+    const double over =
+        std::clamp((warmth_.square / (force_.lasting * force_.lasting) - 0.8) / 0.2, 0.0, 1.0);
+    const double peak = limits.peak / scale, most = peak + over * (limits.lasting / scale - peak);
+    const dvec3 last(before);
+    const dvec3 change = no_longer_than(most, wanted) - last;
+    return vec3(no_longer_than(peak, last + no_longer_than(peak / settings_.slew_time * seconds, change)));
+}
+
+// The force that is as much to the motors, N at the device.
+double Safety::effort(const Wrench& wrench, double forces, double torques) const {
+    const double force = glm::length(dvec3(wrench.force)) * forces;
+    const double torque = glm::length(dvec3(wrench.torque)) * torques;
+    return torque_.peak > 0 ? std::max(force, torque * device_force_.lasting / device_torque_.lasting)
+                            : force;
 }
 
 // By what was pushed with until now, also if that was for longer than it should have been.
@@ -129,7 +171,7 @@ void Safety::warm(double now) {
     if (!std::isfinite(now)) return;
     const double seconds = std::max(now - warmth_.time, 0.0);
     const double weight = settings_.warm_up > 0 ? 1 - std::exp(-seconds / settings_.warm_up) : 1;
-    warmth_ = {warmth_.square + (pushes_ * pushes_ - warmth_.square) * weight, now};
+    warmth_ = {warmth_.square + (effort_ * effort_ - warmth_.square) * weight, now};
 }
 
 void Safety::let_go(Held why) {
@@ -147,19 +189,21 @@ Held Safety::held() const {
 }
 
 // Whether the hand went where it is, as hands go; and what the force that was written did on its way.
-void Safety::watch(const Hand& hand, dvec3 surface) {
-    if (knows_hand_) {
-        const double seconds = std::max(hand.time - before_.time, 0.0);
-        const dvec3 went = dvec3(hand.position) - dvec3(before_.position);
+void Safety::watch(const DeviceState& state, dvec3 surface) {
+    if (knows_place_) {
+        const double seconds = std::max(state.time - before_.time, 0.0);
+        const dvec3 went = state.pose.place - before_.pose.place;
         const double way = glm::length(went);
-        absorbed_ = std::min(absorbed_ - glm::dot(force_, went - seconds * surface), settings_.store);
-        if (hand.placed != before_.placed || hand.forces != before_.forces || hand.motion != before_.motion)
+        const double work = glm::dot(dvec3(allowed_.force), went - seconds * surface);
+        absorbed_ = std::min(absorbed_ - work, settings_.store);
+        if (state.placed != before_.placed || state.forces != before_.forces ||
+            state.motion != before_.motion)
             let_go(Held::placed);
         else if (way > settings_.jump && way > settings_.fastest_hand * seconds)
             let_go(Held::jumped);
     }
-    before_ = hand;
-    knows_hand_ = true;
+    before_ = state;
+    knows_place_ = true;
 }
 
 // From nothing, once little is wanted, to all.
@@ -188,13 +232,6 @@ dvec3 Safety::passive(dvec3 force, dvec3 velocity, double seconds) {
     if (absorbed_ >= 0 || !(square > 1e-8) || !(seconds > 0)) return force;
     const double damping = std::min(-absorbed_ / (square * seconds), settings_.most_damping);
     return force - damping * velocity;
-}
-
-// A motor's heat goes with the square of its force: the mean of that is held to what it can stand. From four
-// fifths of it on the peak comes down, so that force does not break off.
-double Safety::budget() const {
-    const double over = std::clamp((warmth_.square / (lasting_ * lasting_) - 0.8) / 0.2, 0.0, 1.0);
-    return peak_ + over * (lasting_ - peak_);
 }
 
 }  // namespace palpate

@@ -7,16 +7,18 @@
 
 namespace palpate {
 
-/// Limits on what a hand may be pushed with. All are finite and not below zero; in brackets what else.
+/// Limits on what a hand may be pushed with; torques are limited in proportion to forces. All are finite and
+/// not below zero; in brackets what else.
 struct SafetySettings {
     double peak_force = 0;     // N, at the device; 0: what that can do
     double lasting_force = 0;  // N, for longer than about `warm_up`; 0: what the device can
     double warm_up = 10;       // s
-    double fall = 0.008;  // s, in which the peak force may come or go: the fastest change [above 0, to 1]
-    double small_force = 0.1;  // N: only when no more is wanted for
+    double slew_time = 0.008;  // s, in which the peak may come or go: the slew rate is peak / slew_time
+                               // [above 0, to 1]
+    double small_force = 0.1;  // N, or as much torque: only when no more is wanted for
     double calm = 0.02;        // s without a break does force begin, and
     double ramp = 1;           // s, grows to what it shall be
-    double fresh = 0.003;      // s: a sample of the hand that is older lets go, [to 1]
+    double fresh = 0.003;      // s: a sample that is older lets go, [to 1]
     double fade = 0.020;       // s, in so long [above 0, to 1]
     double fastest_hand = 3;   // m/s, and [above 0]
     double jump = 0.01;       // m: a hand that is farther on than both allow was not moved by a person [to 1]
@@ -33,7 +35,8 @@ void check(const DeviceSpec& device);
 
 /// How warm a device's motors are.
 struct Warmth {
-    double square = 0;  // N², at the device: the mean square of the force, over about `warm_up`
+    double square = 0;  // N², at the device: the mean square of the force, over about `warm_up`; a torque
+                        // counts as the force that warms them as much
     double time = 0;    // s, when that was
 };
 
@@ -65,6 +68,9 @@ inline std::span<const Named<Held>> names(Held) {
     return all;
 }
 
+/// Whether all that a device says is finite, and its scale and turn are some.
+bool is_sound(const DeviceState& state);
+
 /// Stands between what a hand would feel and the device: the last word, which nothing passes that could hurt.
 /// Starts with no force. Works on the time that it is given, so it behaves the same on any clock.
 class Safety {
@@ -75,48 +81,53 @@ class Safety {
     /// Other settings, that were checked; the motors stay as warm.
     void set(const SafetySettings& settings);
 
-    /// What may be written now of a wanted force, N. `hand`: the newest sample; `velocity`: of the hand, m/s;
+    /// What may be written now of what is wanted. `state`: the newest sample; `velocity`: of the hand, m/s;
     /// `surface`: of what it touches.
-    dvec3 allow(dvec3 wanted, const Hand& hand, dvec3 velocity, dvec3 surface, double now);
+    Wrench allow(const Wrench& wanted, const DeviceState& state, dvec3 velocity, dvec3 surface, double now);
 
-    /// No force at once, as after the device was stopped.
-    dvec3 none() {
-        pushes_ = 0;
-        return force_ = dvec3(0);
+    /// Nothing at once, as after the device was stopped.
+    Wrench none() {
+        effort_ = 0;
+        return allowed_ = {};
     }
 
-    /// No force until a small one is wanted, and then a new ramp.
+    /// Nothing until little is wanted, and then a new ramp.
     void let_go(Held why);
 
     /// Why there is no force or not all, now; and why it was let go of the last time.
     Held held() const;
     Held last_reason() const { return reason_; }
 
-    double peak_force() const { return peak_; }  // N, at the device
+    double peak_force() const { return force_.peak; }  // N, at the device
     const Warmth& warmth() const { return warmth_; }
 
  private:
-    void watch(const Hand& hand, dvec3 surface);
+    // What a device can, or may, of forces or of torques; in its own units.
+    struct Limits {
+        double peak, lasting;
+    };
+    void watch(const DeviceState& state, dvec3 surface);
     double grown(double wanted, double now);
     dvec3 passive(dvec3 force, dvec3 velocity, double seconds);
     void warm(double now);
-    double budget() const;
+    double effort(const Wrench& wrench, double forces, double torques) const;
+    vec3 limited(const Limits& limits, dvec3 wanted, vec3 before, double scale, double seconds) const;
 
     SafetySettings settings_;
-    double device_peak_, device_lasting_;  // N, that the device can
-    double peak_ = 0, lasting_ = 0;        // N, at the device, that are allowed
+    const Limits device_force_, device_torque_;  // that the device can
+    Limits force_, torque_;                      // that are allowed: N and N·m
     Held reason_ = Held::waiting;
     bool waits_ = true;
     std::optional<double> calm_since_;  // s, when little began to be wanted
     double begun_ = 0;                  // s, when the ramp began
     double gain_ = 0;
     Warmth warmth_;
-    double pushes_ = 0;           // N, at the device, since the last call
+    double effort_ = 0;           // N, at the device, since the last call
     double absorbed_ = 0;         // J, from the hand since the touch began; below 0 it was given out
     std::optional<double> time_;  // of the last call
-    Hand before_ = {};
-    bool knows_hand_ = false;
-    dvec3 force_ = dvec3(0);
+    DeviceState before_ = {};
+    bool knows_place_ = false;
+    Wrench allowed_ = {};
 };
 
 }  // namespace palpate

@@ -17,13 +17,6 @@ constexpr std::size_t most_marks = most_dents - 3;  // the others are for what i
 constexpr int no_stroke = std::numeric_limits<int>::max();
 constexpr double usual_rate = 1000;  // Hz, for which a device's stiffest wall is given
 
-bool is_sound(const Hand& hand) {
-    const float numbers[] = {hand.position.x, hand.position.y, hand.position.z, hand.forces, hand.motion};
-    for (float number : numbers)
-        if (!std::isfinite(number)) return false;
-    return std::isfinite(hand.time) && hand.forces > 0 && hand.motion > 0;
-}
-
 void check(const Feel& feel, const std::string& device) {
     struct Field {
         const char* name;
@@ -112,12 +105,12 @@ Touch::Touch(std::unique_ptr<Device> device, TouchSettings settings, const Warmt
     for (auto& list : lasting_) list.reserve(most_marks);
     device_->open();
     device_->stop();
-    add_hand(*this);
+    add_touch(*this);
 }
 
 Touch::~Touch() {
     device_->stop();
-    remove_hand(*this);
+    remove_touch(*this);
 }
 
 void Touch::set(TouchSettings settings) {
@@ -155,12 +148,12 @@ bool Touch::tick(double now, double* proxy_seconds) noexcept {
     ticking_ = true;
     ticked_.store(now, std::memory_order_release);
     take_wishes();
-    Hand read = hand_;
+    DeviceState read = state_;
     const bool there = device_->read(now, read);
     if (there)
         take_in(read);
     else
-        read = hand_;
+        read = state_;
     was_gone_ = !there;
     bound_stiffness();
     if (patches_.fetch() || patches_.shown().fastest() > 0) carry_marks(now);
@@ -168,22 +161,22 @@ bool Touch::tick(double now, double* proxy_seconds) noexcept {
     time_ = now;
     const dvec3 want = turned_slowly(wanted(now, proxy_seconds), seconds);
     const Contact* most = proxy_.deepest();
-    dvec3 force = safety_.allow(want, read, velocity_, most ? most->velocity : dvec3(0), now);
+    Wrench wrench = safety_.allow({vec3(want), {}}, read, velocity_, most ? most->velocity : dvec3(0), now);
     // The watchdog may have come between: then what was reckoned belongs to a time long ago.
     if (stopped_.exchange(false, std::memory_order_acq_rel)) {
         safety_.let_go(Held::stalled);
-        force = safety_.none();
+        wrench = safety_.none();
     }
     // A device that does not say where it is, or does not take a force, may hold the one that it had.
-    if (!there || !device_->write(vec3(force))) {
+    if (!there || !device_->write(wrench)) {
         device_->stop();
         safety_.let_go(Held::gone);
-        force = safety_.none();
+        wrench = safety_.none();
     }
     // Or here: then what it stopped was not yet this.
     if (stopped_.load(std::memory_order_acquire)) device_->stop();
     leave_marks();
-    tell(now, force);
+    tell(now, wrench);
     ticking_ = false;
     return there;
 }
@@ -207,7 +200,7 @@ void Touch::take_wishes() {
             for (const Mark& mark : marks_[s]) lasting_[s].push_back(mark.dent);
         }
     if (begins_anew_.exchange(false)) {
-        proxy_.put(dvec3(hand_.position));
+        proxy_.put(state_.pose.place);
         safety_.let_go(Held::placed);
     }
 }
@@ -215,7 +208,7 @@ void Touch::take_wishes() {
 // Walls that the device holds still at the loop's rate and in the scale that it has now. Half of what it says
 // is on the safe side.
 void Touch::bound_stiffness() {
-    const double scale = double(hand_.forces) * double(hand_.motion);
+    const double scale = double(state_.forces) * double(state_.motion);
     const double most = 0.5 * double(spec_.stiffness) * std::min(rate_ / usual_rate, 1.0) / scale;
     for (std::size_t s = 0; s < feels_.size(); ++s)
         feels_[s].stiffness = std::min(wishes_.shown().feels[s].stiffness, most);
@@ -237,26 +230,26 @@ void Touch::let_go() noexcept {
 
 // A sample that is none leaves the hand where it was; Safety sees it too and lets go. After the device was
 // gone the hand may be anywhere, as if it had been placed.
-void Touch::take_in(const Hand& read) {
+void Touch::take_in(const DeviceState& read) {
     if (!is_sound(read)) return;
-    if (!knows_hand_ || was_gone_ || read.placed != hand_.placed) {
-        proxy_.put(dvec3(read.position));
+    if (!knows_place_ || was_gone_ || read.placed != state_.placed) {
+        proxy_.put(read.pose.place);
         velocity_ = dvec3(0);
-    } else if (const double seconds = read.time - hand_.time; seconds > 0) {
+    } else if (const double seconds = read.time - state_.time; seconds > 0) {
         const TouchSettings& settings = wishes_.shown();
-        dvec3 speed = dvec3(read.position - hand_.position) / seconds;
+        dvec3 speed = (read.pose.place - state_.pose.place) / seconds;
         if (!(glm::length(speed) <= settings.safety.fastest_hand))
             speed = velocity_ = dvec3(0);  // no motion of a hand
         velocity_ += (1 - std::exp(-seconds / settings.velocity_filter)) * (speed - velocity_);
     }
-    hand_ = read;
-    knows_hand_ = true;
+    state_ = read;
+    knows_place_ = true;
 }
 
 dvec3 Touch::wanted(double now, double* proxy_seconds) {
-    if (!knows_hand_) return dvec3(0);
+    if (!knows_place_) return dvec3(0);
     const double start = proxy_seconds ? thread_seconds() : 0;
-    const dvec3 hand(hand_.position);
+    const dvec3 hand = state_.pose.place;
     const double pushed = proxy_.follow(patches_.shown(), now, hand, friction_);
     if (proxy_seconds) *proxy_seconds = thread_seconds() - start;
     if (pushed > wishes_.shown().surprise) safety_.let_go(Held::pushed);
@@ -335,16 +328,16 @@ void Touch::leave_marks() {
     }
 }
 
-void Touch::tell(double now, dvec3 force) {
+void Touch::tell(double now, const Wrench& wrench) {
     told_.time = now;
-    told_.hand = hand_.position;
+    told_.pose = state_.pose;
     told_.velocity = vec3(velocity_);
     told_.proxy = vec3(proxy_.position());
-    told_.force = vec3(force);
+    told_.force = wrench.force;
     told_.held = safety_.held();
     told_.last_reason = safety_.last_reason();
-    told_.buttons = hand_.buttons;
-    told_.placed = hand_.placed;
+    told_.buttons = state_.buttons;
+    told_.placed = state_.placed;
     told_.warmth = safety_.warmth();
     told_.depth = 0;
     told_.count = 0;

@@ -29,7 +29,7 @@ struct TouchSettings {
 /// What a touch was like at its last tick.
 struct Felt {
     double time = 0;                   // s
-    vec3 hand = vec3(0);               // m
+    Pose pose = {};                    // of the device
     vec3 velocity = vec3(0);           // m/s, of the hand
     vec3 proxy = vec3(0);              // m
     vec3 force = vec3(0);              // N, on the hand
@@ -108,13 +108,13 @@ class Touch {
 
  private:
     void take_wishes();
-    void take_in(const Hand& hand);
+    void take_in(const DeviceState& read);
     void bound_stiffness();
     dvec3 wanted(double now, double* proxy_seconds);
     void carry_marks(double now);
     dvec3 turned_slowly(dvec3 wanted, double seconds);
     void leave_marks();
-    void tell(double now, dvec3 force);
+    void tell(double now, const Wrench& wrench);
 
     // A dent that stays, where its surface carries it.
     struct Mark {
@@ -134,8 +134,8 @@ class Touch {
     Safety safety_;
     TripleBuffer<Patch> patches_;
     std::atomic<double> lost_ = 0;  // s, of the settings, for the watchdog
-    Hand hand_ = {};
-    bool knows_hand_ = false;
+    DeviceState state_ = {};        // the newest that is sound
+    bool knows_place_ = false;
     bool was_gone_ = false;
     dvec3 velocity_ = dvec3(0);
     dvec3 direction_ = dvec3(0);

@@ -103,15 +103,15 @@ path = [[0.5, 0, 0, 0, 0, 0, 0], [1.5, 0, 0, 0, 180, 0, 0]]
 // ---- colliders that move ----
 
 TEST(Play, AFrameOfMotionEndsAtThePose) {
-    const Pose from{{0.1f, 0.2f, 0.3f}, turn({10, 20, 30})}, to{{0.2f, 0, 0.1f}, turn({25, -20, 60})};
+    const Pose from = pose({0, {0.1f, 0.2f, 0.3f}, {10, 20, 30}}), to = pose({1, {0.2f, 0, 0.1f}, {25, -20, 60}});
     const vec3 pivot(1, 2, 3);
     const double seconds = 1.0 / 60;
     const Motion motion = motion_between(from, to, pivot, seconds), end = after(motion, float(seconds));
     for (vec3 p : {vec3(0), vec3(0.1f, 0, 0), vec3(0, 0.3f, 0.2f)}) {
         EXPECT_LT(
-            glm::distance(motion.position + motion.rotation * p, pivot + from.position + from.rotation * p),
+            glm::distance(motion.position + motion.rotation * p, pivot + vec3(from.of(dvec3(p)))),
             1e-6f);
-        EXPECT_LT(glm::distance(end.position + end.rotation * p, pivot + to.position + to.rotation * p),
+        EXPECT_LT(glm::distance(end.position + end.rotation * p, pivot + vec3(to.of(dvec3(p)))),
                   1e-6f);
     }
     const Motion still = motion_between(to, to, pivot, seconds);

@@ -229,7 +229,7 @@ path = [[0, 0, 0, 0, 0, 0, 0], [1, 0.1, 0, 0, 0, 90, 0]]
     EXPECT_EQ(scene.moves.at(0).body, "cube");
     EXPECT_EQ(scene.moves[0].nodes.below, 0.1f);
     EXPECT_LT(
-        glm::distance(pose(scene.moves[0].path, 0.5).rotation[0], vec3(std::sqrt(0.5f), 0, -std::sqrt(0.5f))),
+        glm::distance(pose(scene.moves[0].path, 0.5).turn * dvec3(1, 0, 0), dvec3(std::sqrt(0.5), 0, -std::sqrt(0.5))),
         1e-6f);
     const std::string path = "path = [[0, 0, 0, 0]]\n", nodes = "nodes = { below = 0.1 }\n";
     expect_words(refusal(small + "[[move]]\n" + nodes), {"move 1", "line 8", "path"});
@@ -342,10 +342,10 @@ TEST(Path, TurnsEvenlyInDegrees) {
     const Path path = read_path(scratch / "turn.csv", Rows::poses);
     // A third of the way, and not the short way round.
     const Pose third = pose(path, 1 + 1.0 / 3);
-    EXPECT_LT(glm::distance(third.rotation * vec3(1, 0, 0), vec3(0, 1, 0)), 1e-6f);
-    EXPECT_NEAR(third.position.z, 1.0f / 3, 1e-6f);
-    EXPECT_EQ(pose(path, 0).rotation, mat3(1));
-    EXPECT_LT(glm::distance(pose(path, 9).rotation * vec3(1, 0, 0), vec3(0, -1, 0)), 1e-6f);
+    EXPECT_LT(glm::distance(third.turn * dvec3(1, 0, 0), dvec3(0, 1, 0)), 1e-6);
+    EXPECT_NEAR(third.place.z, 1.0 / 3, 1e-6f);
+    EXPECT_EQ(pose(path, 0), Pose{});
+    EXPECT_LT(glm::distance(pose(path, 9).turn * dvec3(1, 0, 0), dvec3(0, -1, 0)), 1e-6);
     EXPECT_THROW(read_path(scratch / "turn.csv"), Error);
     // About x, then y, then z, like a mesh.
     Mesh mesh;

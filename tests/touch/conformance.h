@@ -24,8 +24,8 @@ namespace palpate {
 /// A device, and how a test looks behind it.
 struct Subject {
     std::unique_ptr<Device> device;
-    std::function<vec3()> force =
-        {};  // N, that its motors push with now; empty: it has none that could be asked
+    std::function<Wrench()> wrench =
+        {};  // that its motors push with now; empty: it has none that could be asked
 };
 
 /// A device not yet made: each test makes its own.
@@ -42,24 +42,26 @@ class Conformance : public testing::TestWithParam<Specimen> {
  protected:
     static constexpr double begin = 1234.5;  // s: a loop's clock need not begin at 0
     static constexpr double tick = 1e-3;     // s
-    static constexpr vec3 push = vec3(0.3f, -0.2f, 0.1f);
+    static constexpr Wrench push = {vec3(0.3f, -0.2f, 0.1f), vec3(0.01f, 0, -0.02f)};
 
     Subject subject_ = GetParam().make();
     Device& device_ = *subject_.device;
 };
 
-inline bool same(const Hand& a, const Hand& b) {
-    return std::memcmp(&a.position, &b.position, sizeof a.position) == 0 && a.time == b.time &&
-           a.buttons == b.buttons && a.placed == b.placed;
+inline bool same(const DeviceState& a, const DeviceState& b) {
+    return std::memcmp(&a.pose, &b.pose, sizeof a.pose) == 0 && a.time == b.time && a.buttons == b.buttons &&
+           a.placed == b.placed;
 }
 
-inline void expect_scale(const Hand& hand) {
-    EXPECT_TRUE(std::isfinite(hand.forces) && hand.forces > 0);
-    EXPECT_TRUE(std::isfinite(hand.motion) && hand.motion > 0);
+inline void expect_scale(const DeviceState& state) {
+    EXPECT_TRUE(std::isfinite(state.forces) && state.forces > 0);
+    EXPECT_TRUE(std::isfinite(state.motion) && state.motion > 0);
 }
 
-inline void expect_finite(vec3 v) {
-    EXPECT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
+// Finite, and turned by something that turns.
+inline void expect_pose(const Pose& pose) {
+    EXPECT_TRUE(std::isfinite(glm::dot(pose.place, pose.place)));
+    EXPECT_NEAR(glm::length(pose.turn), 1, 1e-6);
 }
 
 TEST_P(Conformance, ItsSpecIsSaneBeforeItIsOpenAndAfter) {
@@ -70,32 +72,38 @@ TEST_P(Conformance, ItsSpecIsSaneBeforeItIsOpenAndAfter) {
         EXPECT_GT(spec.lasting_force, 0);
         EXPECT_GE(spec.peak_force, spec.lasting_force);
         EXPECT_TRUE(std::isfinite(spec.peak_force));
+        EXPECT_GE(spec.lasting_torque, 0);
+        EXPECT_GE(spec.peak_torque, spec.lasting_torque);
+        EXPECT_EQ(spec.lasting_torque > 0, spec.peak_torque > 0);
+        EXPECT_TRUE(std::isfinite(spec.peak_torque));
+        EXPECT_GT(spec.workspace, 0);
+        EXPECT_TRUE(std::isfinite(spec.workspace));
         EXPECT_GT(spec.stiffness, 0);
         EXPECT_TRUE(std::isfinite(spec.stiffness));
         device_.open();
     }
 }
 
-TEST_P(Conformance, AHandIsFiniteAndOfItsTime) {
+TEST_P(Conformance, APoseIsFiniteAndOfItsTime) {
     device_.open();
-    Hand hand, last{.time = -std::numeric_limits<double>::infinity()};
+    DeviceState state, last{.time = -std::numeric_limits<double>::infinity()};
     bool was_gone = false;
     for (int i = 0; i < 3000; ++i) {
         const double now = begin + i * tick;
-        const Hand before = hand;
-        if (!device_.read(now, hand)) {
+        const DeviceState before = state;
+        if (!device_.read(now, state)) {
             was_gone = true;
-            EXPECT_TRUE(same(hand, before)) << "a device that is gone leaves the hand as it was";
+            EXPECT_TRUE(same(state, before)) << "a device that is gone leaves the state as it was";
             device_.write(push);
             continue;
         }
-        expect_finite(hand.position);
-        EXPECT_LE(hand.time, now);
-        EXPECT_GE(hand.time, last.time);
-        EXPECT_GE(hand.placed, last.placed);
-        expect_scale(hand);
-        last = hand;
-        device_.write(push * float(i % 7));
+        expect_pose(state.pose);
+        EXPECT_LE(state.time, now);
+        EXPECT_GE(state.time, last.time);
+        EXPECT_GE(state.placed, last.placed);
+        expect_scale(state);
+        last = state;
+        device_.write({push.force * float(i % 7), push.torque * float(i % 5)});
     }
     EXPECT_EQ(was_gone, !GetParam().stays);
     device_.stop();
@@ -103,25 +111,25 @@ TEST_P(Conformance, AHandIsFiniteAndOfItsTime) {
 
 TEST_P(Conformance, TicksNeedNotBeEven) {
     device_.open();
-    Hand hand;
+    DeviceState state;
     double now = begin, last = 0;
     for (double later : {0.0, 0.0, 1e-3, 1e-9, 0.0, 3e-3, 2.5, 1e-4, 60.0, 1e-3}) {
         now += later;
-        if (!device_.read(now, hand)) continue;
-        expect_finite(hand.position);
-        EXPECT_LE(hand.time, now);
-        EXPECT_GE(hand.time, last);
-        last = hand.time;
+        if (!device_.read(now, state)) continue;
+        expect_pose(state.pose);
+        EXPECT_LE(state.time, now);
+        EXPECT_GE(state.time, last);
+        last = state.time;
         device_.write(push);
     }
 }
 
 TEST_P(Conformance, ReadingAndWritingNeverAllocate) {
     device_.open();
-    Hand hand;
+    DeviceState state;
     const std::size_t before = allocations();
     for (int i = 0; i < 3000; ++i) {
-        device_.read(begin + i * tick, hand);
+        device_.read(begin + i * tick, state);
         device_.write(push);
         if (i % 100 == 0) device_.stop();
     }
@@ -130,30 +138,30 @@ TEST_P(Conformance, ReadingAndWritingNeverAllocate) {
 
 TEST_P(Conformance, AfterAStopNoForceUntilTheNextWrite) {
     device_.open();
-    Hand hand;
-    auto force = [&] { return subject_.force ? subject_.force() : vec3(0); };
+    DeviceState state;
+    auto wrench = [&] { return subject_.wrench ? subject_.wrench() : Wrench{}; };
     for (int i = 0; i < 100; ++i) {
-        device_.read(begin + i * tick, hand);
+        device_.read(begin + i * tick, state);
         device_.write(push);
     }
-    if (subject_.force && GetParam().stays) {
-        EXPECT_NE(force(), vec3(0));
+    if (subject_.wrench && GetParam().stays) {
+        EXPECT_NE(wrench(), Wrench{});
     }
     device_.stop();
-    EXPECT_EQ(force(), vec3(0));
+    EXPECT_EQ(wrench(), Wrench{});
     for (int i = 100; i < 200; ++i) {
-        device_.read(begin + i * tick, hand);
-        EXPECT_EQ(force(), vec3(0));
+        device_.read(begin + i * tick, state);
+        EXPECT_EQ(wrench(), Wrench{});
     }
     device_.stop();
     device_.stop();
-    EXPECT_EQ(force(), vec3(0));
+    EXPECT_EQ(wrench(), Wrench{});
     for (int i = 200; i < 300; ++i) {
         device_.write(push);
-        device_.read(begin + i * tick, hand);
+        device_.read(begin + i * tick, state);
     }
-    if (subject_.force && GetParam().stays) {
-        EXPECT_NE(force(), vec3(0));
+    if (subject_.wrench && GetParam().stays) {
+        EXPECT_NE(wrench(), Wrench{});
     }
     device_.stop();
 }
@@ -164,20 +172,20 @@ TEST_P(Conformance, AnotherThreadMayStopIt) {
     std::thread watchdog([&] {
         while (!over) device_.stop();
     });
-    Hand hand;
+    DeviceState state;
     for (int i = 0; i < 2000; ++i) {
-        device_.read(begin + i * tick, hand);
+        device_.read(begin + i * tick, state);
         device_.write(push);
     }
     over = true;
     watchdog.join();
     device_.stop();
-    if (subject_.force) {
-        EXPECT_EQ(subject_.force(), vec3(0));
+    if (subject_.wrench) {
+        EXPECT_EQ(subject_.wrench(), Wrench{});
     }
-    device_.read(begin + 2000 * tick, hand);
-    if (subject_.force) {
-        EXPECT_EQ(subject_.force(), vec3(0));
+    device_.read(begin + 2000 * tick, state);
+    if (subject_.wrench) {
+        EXPECT_EQ(subject_.wrench(), Wrench{});
     }
 }
 
@@ -185,8 +193,8 @@ TEST_P(Conformance, StoppingItBeforeItIsOpenDoesNothing) {
     device_.stop();
     device_.open();
     device_.stop();
-    Hand hand;
-    device_.read(begin, hand);
+    DeviceState state;
+    device_.read(begin, state);
     device_.stop();
 }
 
@@ -197,8 +205,8 @@ TEST_P(Conformance, ItOpensTwiceOrSaysWhyNot) {
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find(device_.spec().name), std::string::npos) << error.what();
     }
-    Hand hand;
-    if (device_.read(begin, hand)) expect_finite(hand.position);
+    DeviceState state;
+    if (device_.read(begin, state)) expect_pose(state.pose);
     device_.stop();
 }
 

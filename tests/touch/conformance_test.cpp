@@ -21,17 +21,17 @@ class Carousel : public Device {
  public:
     DeviceSpec spec() const override { return {.name = "carousel", .peak_force = 2, .lasting_force = 1}; }
     void open() override {}
-    bool read(double now, Hand& hand) noexcept override {
-        hand = {.position = vec3(std::cos(now), 0, std::sin(now)), .time = now};
+    bool read(double now, DeviceState& state) noexcept override {
+        state = {.pose = {.place = dvec3(std::cos(now), 0, std::sin(now))}, .time = now};
         return true;
     }
-    bool write(vec3 force) noexcept override {
-        x_ = force.x, y_ = force.y, z_ = force.z;
+    bool write(const Wrench& wrench) noexcept override {
+        x_ = wrench.force.x, y_ = wrench.force.y, z_ = wrench.force.z;
         return true;
     }
     void stop() noexcept override { x_ = y_ = z_ = 0; }
 
-    vec3 force() const { return vec3(float(x_), float(y_), float(z_)); }
+    Wrench wrench() const { return {vec3(float(x_), float(y_), float(z_))}; }
 
  private:
     std::atomic<float> x_ = 0, y_ = 0, z_ = 0;  // N
@@ -43,7 +43,7 @@ std::function<Subject()> hand_in(Around around, VirtualHandSettings settings = {
     return [=] {
         auto hand = std::make_unique<VirtualHand>(path, settings);
         const VirtualHand* inside = hand.get();
-        return Subject{around(std::move(hand)), [inside] { return inside->force(); }};
+        return Subject{around(std::move(hand)), [inside] { return Wrench{inside->force()}; }};
     };
 }
 
@@ -62,8 +62,7 @@ std::function<Subject()> simple(With... with) {
 Log some_log() {
     Log log{.device = "a log", .rate = 500, .ticks = {}};
     for (int i = 0; i < 700; ++i)
-        log.ticks.push_back(
-            {2 + i * 2e-3, {vec3(float(i), 0, 0), 1.999 + i * 2e-3, 0, unsigned(i / 100)}, vec3(0)});
+        log.ticks.push_back({2 + i * 2e-3, {{dvec3(i, 0, 0)}, 1.999 + i * 2e-3, 0, unsigned(i / 100)}, {}});
     return log;
 }
 
@@ -85,7 +84,7 @@ const std::vector<Specimen> all = {
      [] {
          auto device = std::make_unique<Carousel>();
          const Carousel* inside = device.get();
-         return Subject{std::move(device), [inside] { return inside->force(); }};
+         return Subject{std::move(device), [inside] { return inside->wrench(); }};
      }},
     {"Hand", hand_in(alone)},
     {"QuantisedLateHand", hand_in(alone, {.resolution = 2.5e-5, .delay = 0.0025})},

@@ -75,11 +75,11 @@ constexpr double omega2 = 300 / 0.2, braking = 2 / 0.2;
 template <class Force>
 void run(VirtualHand& hand, double rate, double seconds, Force force) {
     hand.open();
-    Hand ignored;
+    DeviceState ignored;
     const int ticks = int(std::lround(seconds * rate));
     for (int i = 0; i < ticks; ++i) {
         EXPECT_TRUE(hand.read(i / rate, ignored));
-        EXPECT_TRUE(hand.write(force(i / rate)));
+        EXPECT_TRUE(hand.write({force(i / rate)}));
     }
     EXPECT_TRUE(hand.read(ticks / rate, ignored));
 }
@@ -174,13 +174,13 @@ TEST_P(VirtualHandAt, IsStableBeforeAWallUpToWhatTheoryAllows) {
     for (double part : {0.98, 1.02}) {
         VirtualHand hand({{0, vec3(0)}}, person);
         hand.open();
-        Hand read;
+        DeviceState read;
         double early = 0, late = 0;
         const int ticks = int(60 * GetParam());
         for (int i = 0; i < ticks; ++i) {
             hand.read(i * tick, read);
             // A push to begin with, then nothing but the wall, which is felt on both sides.
-            hand.write(i == 0 ? vec3(0.1f, 0, 0) : vec3(hand.position() * -part * limit));
+            hand.write({i == 0 ? vec3(0.1f, 0, 0) : vec3(hand.position() * -part * limit)});
             const double place = std::abs(hand.position().x);
             if (i < ticks / 4) early = std::max(early, place);
             if (i >= ticks * 3 / 4) late = std::max(late, place);
@@ -202,15 +202,15 @@ TEST(VirtualHand, ADelayOfAWholeTickIsOneTick) {
     VirtualHand hand({{0, vec3(0)}}, late), other({{0, vec3(0)}}, person);
     hand.open();
     other.open();
-    Hand ignored;
+    DeviceState ignored;
     std::vector<vec3> written;
     for (int i = 0; i < 500; ++i) {
         hand.read(i * 1e-3, ignored);
         other.read(i * 1e-3, ignored);
         EXPECT_LE(length(hand.position() - other.position()), 1e-12);
         written.push_back(vec3(std::sin(i), 0, i % 5));
-        hand.write(written.back());
-        other.write(i >= 2 ? written[i - 2] : vec3(0));
+        hand.write({written.back()});
+        other.write({i >= 2 ? written[i - 2] : vec3(0)});
     }
 }
 
@@ -221,15 +221,15 @@ TEST(VirtualHand, IsReadByAnEncoder) {
         whole({{0, vec3(-0.05f, 0.02f, 0)}, {1, vec3(0.06f, 0, 0)}}, person);
     hand.open();
     whole.open();
-    Hand read, exact;
+    DeviceState read, exact;
     for (int i = 0; i < 1500; ++i) {
         hand.read(i * 1e-3, read);
         whole.read(i * 1e-3, exact);
         EXPECT_EQ(hand.position(), whole.position());  // only what is read is rounded
         for (int axis = 0; axis < 3; ++axis) {
-            const double steps = read.position[axis] / 1e-3;
+            const double steps = read.pose.place[axis] / 1e-3;
             EXPECT_LE(std::abs(steps - std::round(steps)), 1e-5);
-            EXPECT_LE(std::abs(read.position[axis] - exact.position[axis]), 0.5e-3 + 1e-8);
+            EXPECT_LE(std::abs(read.pose.place[axis] - exact.pose.place[axis]), 0.5e-3 + 1e-8);
         }
     }
 }
@@ -239,14 +239,14 @@ TEST(VirtualHand, AStopAlsoTakesForcesThatAreOnTheirWay) {
     late.delay = 0.05;
     VirtualHand hand({{0, vec3(0)}}, late);
     hand.open();
-    Hand ignored;
+    DeviceState ignored;
     for (int i = 0; i < 200; ++i) {
         hand.read(i * 1e-3, ignored);
-        if (i < 30) hand.write(vec3(5, 0, 0));
+        if (i < 30) hand.write({vec3(5, 0, 0)});
         if (i == 30) hand.stop();
         EXPECT_EQ(hand.position(), dvec3(0));
     }
-    hand.write(vec3(5, 0, 0));
+    hand.write({vec3(5, 0, 0)});
     hand.read(0.3, ignored);
     EXPECT_GT(hand.position().x, 1e-3);
 }
@@ -254,11 +254,11 @@ TEST(VirtualHand, AStopAlsoTakesForcesThatAreOnTheirWay) {
 TEST(VirtualHand, WhatIsNoForceDoesNotPush) {
     VirtualHand hand({{0, vec3(0)}}, person);
     hand.open();
-    Hand read;
+    DeviceState read;
     hand.read(0, read);
-    hand.write(vec3(NAN, 1, 0));
+    hand.write({vec3(NAN, 1, 0)});
     hand.read(1, read);
-    EXPECT_EQ(read.position, vec3(0));
+    EXPECT_EQ(read.pose.place, dvec3(0));
 }
 
 TEST(VirtualHand, WhatCannotBeIsSaid) {
@@ -281,12 +281,12 @@ TEST(Script, FollowsItsPathFromTheFirstRead) {
     const Path path = {{0, vec3(0)}, {1, vec3(0, 2, 0)}};
     Script script(path);
     script.open();
-    Hand hand;
+    DeviceState state;
     for (double t : {0.0, 0.25, 0.5, 1.0, 7.0}) {
-        EXPECT_TRUE(script.read(64 + t, hand));
-        EXPECT_EQ(hand.position, position(path, t));
-        EXPECT_EQ(hand.time, 64 + t);
-        EXPECT_TRUE(script.write(vec3(100)));
+        EXPECT_TRUE(script.read(64 + t, state));
+        EXPECT_EQ(state.pose, pose(path, t));
+        EXPECT_EQ(state.time, 64 + t);
+        EXPECT_TRUE(script.write({vec3(100)}));
     }
     EXPECT_THROW(Script({}).open(), Error);
 }
@@ -302,11 +302,11 @@ MouseSettings before_the_origin() {
 
 // Where the hand comes to rest.
 vec3 settled(Mouse& mouse, double& now) {
-    Hand hand;
-    mouse.read(now, hand);
+    DeviceState state;
+    mouse.read(now, state);
     now += 10;
-    mouse.read(now, hand);
-    return hand.position;
+    mouse.read(now, state);
+    return vec3(state.pose.place);
 }
 
 TEST(Mouse, IsUnderThePointerAsDeepAsTheCameraLooks) {
@@ -355,20 +355,20 @@ TEST(Mouse, IsFedFromAnotherThread) {
         }
         over = true;
     });
-    Hand hand;
+    DeviceState state;
     double now = 0;
     unsigned placed = 0;
     while (!over) {
-        ASSERT_TRUE(mouse.read(now += 1, hand));  // each time it has a second to come to rest
-        ASSERT_GE(hand.placed, placed);
-        ASSERT_LE(length(hand.position), 1.0f);
-        placed = hand.placed;
+        ASSERT_TRUE(mouse.read(now += 1, state));  // each time it has a second to come to rest
+        ASSERT_GE(state.placed, placed);
+        ASSERT_LE(length(state.pose.place), 1.0f);
+        placed = state.placed;
     }
     window.join();
-    mouse.read(now += 1, hand);
-    mouse.read(now += 1, hand);
-    EXPECT_EQ(hand.buttons, 1u);
-    EXPECT_LE(length(hand.position - vec3(1, 0, 0)), 1e-6f);
+    mouse.read(now += 1, state);
+    mouse.read(now += 1, state);
+    EXPECT_EQ(state.buttons, 1u);
+    EXPECT_LE(length(state.pose.place - dvec3(1, 0, 0)), 1e-6f);
 }
 
 TEST(Mouse, GoesToItsTargetCriticallyDamped) {
@@ -378,17 +378,17 @@ TEST(Mouse, GoesToItsTargetCriticallyDamped) {
     for (double rate : {250.0, 1000.0, 4000.0}) {
         Mouse mouse(settings, events);
         mouse.open();
-        Hand hand;
+        DeviceState state;
         for (int i = 0; i <= int(0.3 * rate); ++i) {
             const double t = i / rate;
-            mouse.read(64 + t, hand);
+            mouse.read(64 + t, state);
             double truth = 0;  // each event is a step of half a metre, answered by 1 - exp(-u) (1 + u)
             for (double event : {0.2004, 0.2173})
                 if (const double u = (t - event) / settings.smoothing; u > 0)
                     truth += 0.5 * (1 - std::exp(-u) * (1 + u));
-            EXPECT_LE(length(dvec3(hand.position) - dvec3(0, truth, 0)), 1e-6) << t;
-            EXPECT_EQ(hand.buttons, t < 0.2173 - 1e-9 ? 0u : 5u);
-            EXPECT_EQ(hand.placed, t < 0.1 - 1e-9 ? 0u : 1u);  // by its first event
+            EXPECT_LE(length(state.pose.place - dvec3(0, truth, 0)), 1e-6) << t;
+            EXPECT_EQ(state.buttons, t < 0.2173 - 1e-9 ? 0u : 5u);
+            EXPECT_EQ(state.placed, t < 0.1 - 1e-9 ? 0u : 1u);  // by its first event
         }
     }
 }
@@ -397,68 +397,70 @@ TEST(Mouse, AnotherViewPlacesItAnew) {
     MouseSettings settings = before_the_origin();
     Mouse mouse(settings);
     mouse.open();
-    Hand hand;
-    mouse.read(0, hand);
+    DeviceState state;
+    mouse.read(0, state);
     mouse.point({.position = vec2(100, 25)});
-    mouse.read(0.001, hand);
-    const unsigned placed = hand.placed;
-    mouse.read(0.002, hand);
-    EXPECT_EQ(hand.placed, placed);
+    mouse.read(0.001, state);
+    const unsigned placed = state.placed;
+    mouse.read(0.002, state);
+    EXPECT_EQ(state.placed, placed);
     settings.camera.look_at = vec3(0, 0, -1);
     mouse.look(settings.camera, settings.size);
-    mouse.read(0.003, hand);
-    EXPECT_EQ(hand.placed, placed + 1);
-    EXPECT_LE(length(hand.position - vec3(0, 1, -1)), 1e-6f);  // at once
+    mouse.read(0.003, state);
+    EXPECT_EQ(state.placed, placed + 1);
+    EXPECT_LE(length(state.pose.place - dvec3(0, 1, -1)), 1e-6f);  // at once
     mouse.point({.position = vec2(100, 20)});
-    mouse.read(0.004, hand);
-    EXPECT_EQ(hand.placed, placed + 1);
+    mouse.read(0.004, state);
+    EXPECT_EQ(state.placed, placed + 1);
 }
 
 TEST(Mouse, WhereItIsPlacedItIsAtOnceAndGoesOnFromThere) {
     Mouse mouse({.camera = {.eye = vec3(0, 0, 1), .look_at = vec3(0)}, .size = ivec2(100)});
     mouse.open();
-    Hand hand;
+    DeviceState state;
     mouse.point({.time = 0, .position = vec2(50)});
-    mouse.read(0, hand);
-    const unsigned before = hand.placed;
+    mouse.read(0, state);
+    const unsigned before = state.placed;
     // Both before the loop comes round: it is placed to the left, and goes to the right from there.
     mouse.place({.time = 0.001, .position = vec2(10, 50)});
     mouse.point({.time = 0.001, .position = vec2(90, 50)});
-    mouse.read(0.001, hand);
-    EXPECT_EQ(hand.placed, before + 1);
-    const float left = hand.position.x;
+    mouse.read(0.001, state);
+    EXPECT_EQ(state.placed, before + 1);
+    const double left = state.pose.place.x;
     EXPECT_LT(left, -0.1f);
-    mouse.read(0.002, hand);
-    EXPECT_GT(hand.position.x, left);
-    EXPECT_LT(hand.position.x, 0);
-    mouse.read(1, hand);
-    EXPECT_NEAR(hand.position.x, -left, 1e-4);
-    EXPECT_EQ(hand.placed, before + 1);
+    mouse.read(0.002, state);
+    EXPECT_GT(state.pose.place.x, left);
+    EXPECT_LT(state.pose.place.x, 0);
+    mouse.read(1, state);
+    EXPECT_NEAR(state.pose.place.x, -left, 1e-4);
+    EXPECT_EQ(state.placed, before + 1);
 }
 
 // ---- playback, and devices by name ----
 
 TEST(Playback, GoesStraightBetweenTicksButOverNoJump) {
     Log log;
-    log.ticks = {{10, {vec3(0), 10, 0, 0}, vec3(0)},
-                 {11, {vec3(4, 0, 0), 10.5, 1, 0}, vec3(0)},
-                 {12, {vec3(9, 0, 0), 12, 0, 1}, vec3(0)}};
+    log.ticks = {{10, {{dvec3(0)}, 10, 0, 0}, {}},
+                 {11, {{dvec3(4, 0, 0), dquat(0, 0, 1, 0)}, 10.5, 1, 0}, {}},
+                 {12, {{dvec3(9, 0, 0)}, 12, 0, 1}, {}}};
     Playback playback(log);
     playback.open();
-    Hand hand;
+    DeviceState state;
     auto at = [&](double t) {
-        playback.read(100 + t, hand);
-        return hand.position.x;
+        playback.read(100 + t, state);
+        return state.pose.place.x;
     };
     EXPECT_EQ(at(0), 0);
     EXPECT_EQ(at(0.25), 1);
-    EXPECT_EQ(hand.time, 100.125);  // as its samples grew old
+    EXPECT_EQ(state.time, 100.125);  // as its samples grew old
+    at(0.5);
+    EXPECT_LE(glm::length(state.pose.turn - dquat(std::sqrt(0.5), 0, std::sqrt(0.5), 0)), 1e-12);
     EXPECT_EQ(at(1), 4);
-    EXPECT_EQ(hand.buttons, 1u);
+    EXPECT_EQ(state.buttons, 1u);
     EXPECT_EQ(at(1.75), 4);
     EXPECT_EQ(at(2), 9);
     EXPECT_EQ(at(50), 9);
-    EXPECT_EQ(hand.time, 150);
+    EXPECT_EQ(state.time, 150);
     EXPECT_THROW(Playback(Log{}).open(), Error);
 }
 
@@ -472,8 +474,8 @@ TEST(MakeDevice, KnowsThemByName) {
         auto device = make_device(named.name, settings);
         ASSERT_TRUE(device) << named.name;
         device->open();
-        Hand hand;
-        EXPECT_TRUE(device->read(0, hand)) << named.name;
+        DeviceState state;
+        EXPECT_TRUE(device->read(0, state)) << named.name;
     }
     EXPECT_EQ(refusal([] { make_device("mose"); }),
               "no device \"mose\" in the list of devices; did you mean \"mouse\"? There are hand, "

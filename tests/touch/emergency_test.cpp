@@ -33,14 +33,14 @@ class Pressing final : public Device {
 
     DeviceSpec spec() const override { return {.name = "motor"}; }
     void open() override {}
-    bool read(double now, Hand& hand) noexcept override {
+    bool read(double now, DeviceState& state) noexcept override {
         if (start_ < 0) start_ = now;
         const double depth = std::clamp((now - start_ - 0.05) / 0.1, -0.2, 1.0) * 0.005;
-        hand = {.position = vec3(0, 0.003f - float(depth), 0), .time = now};
+        state = {.pose = {.place = dvec3(0, 0.003 - depth, 0)}, .time = now};
         return true;
     }
-    bool write(vec3 force) noexcept override {
-        motor_.holds = glm::length(force);
+    bool write(const Wrench& wrench) noexcept override {
+        motor_.holds = glm::length(wrench.force);
         if (motor_.holds > 0.5f) motor_.pushed = 1;
         return true;
     }

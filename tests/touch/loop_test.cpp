@@ -26,16 +26,16 @@ class Counting final : public Device {
  public:
     DeviceSpec spec() const override { return {}; }
     void open() override {}
-    bool read(double now, Hand& hand) noexcept override {
+    bool read(double now, DeviceState& state) noexcept override {
         while (hangs) pass(0.001);
-        hand.time = now;
+        state.time = now;
         ++reads;
         const std::size_t count = allocations();
         if (reads > 1) allocated += count - before_;
         before_ = count;
         return true;
     }
-    bool write(vec3) noexcept override { return true; }
+    bool write(const Wrench&) noexcept override { return true; }
     void stop() noexcept override { ++stops; }
 
     std::atomic<long> reads = 0, stops = 0;
@@ -46,18 +46,18 @@ class Counting final : public Device {
     std::size_t before_ = 0;
 };
 
-struct Hand2 {
+struct Counted {
     Counting* device;
     std::unique_ptr<Touch> touch;
-    Hand2() {
+    Counted() {
         auto made = std::make_unique<Counting>();
         device = made.get();
         touch = std::make_unique<Touch>(std::move(made), TouchSettings{});
     }
 };
 
-TEST(TouchLoop, TicksAllItsHandsAndEnds) {
-    Hand2 one, two;
+TEST(TouchLoop, TicksAllItsTouchesAndEnds) {
+    Counted one, two;
     {
         TouchLoop loop({one.touch.get(), two.touch.get()});
         EXPECT_FALSE(loop.granted().schedule.empty());
@@ -73,34 +73,33 @@ TEST(TouchLoop, TicksAllItsHandsAndEnds) {
 
 TEST(TouchLoop, IsNeverFasterThanItsRate) {
     for (double rate : {250.0, 1000.0, 4000.0}) {
-        Hand2 hand;
+        Counted one;
         const double start = now();
-        TouchLoop loop({hand.touch.get()}, {.rate = rate});
-        while (hand.device->reads < 100) pass(0.001);
-        const long reads =
-            hand.device->reads;  // first: this thread may have to wait before it sees the clock
+        TouchLoop loop({one.touch.get()}, {.rate = rate});
+        while (one.device->reads < 100) pass(0.001);
+        const long reads = one.device->reads;  // first: this thread may have to wait before it sees the clock
         EXPECT_LE(double(reads), rate * (now() - start) + 3) << rate;
     }
 }
 
-TEST(TouchLoop, ItsWatchdogStopsAHandThatHangs) {
-    Hand2 hand;
-    TouchLoop loop({hand.touch.get()});
-    while (hand.device->reads < 20) pass(0.001);
-    const long stops = hand.device->stops;
-    hand.device->hangs = true;
-    while (loop.times_stalled() == 0 || hand.device->stops == stops) pass(0.001);
-    hand.device->hangs = false;
-    const long reads = hand.device->reads;
-    while (hand.device->reads < reads + 20) pass(0.001);  // it goes on
+TEST(TouchLoop, ItsWatchdogStopsADeviceThatHangs) {
+    Counted one;
+    TouchLoop loop({one.touch.get()});
+    while (one.device->reads < 20) pass(0.001);
+    const long stops = one.device->stops;
+    one.device->hangs = true;
+    while (loop.times_stalled() == 0 || one.device->stops == stops) pass(0.001);
+    one.device->hangs = false;
+    const long reads = one.device->reads;
+    while (one.device->reads < reads + 20) pass(0.001);  // it goes on
 }
 
 TEST(TouchLoop, RefusesARateThatIsNone) {
-    Hand2 hand;
+    Counted one;
     for (double rate : {0.0, 100.0, 5000.0, -1.0, double(NAN)})
-        EXPECT_THROW(TouchLoop({hand.touch.get()}, {.rate = rate}), Error) << rate;
+        EXPECT_THROW(TouchLoop({one.touch.get()}, {.rate = rate}), Error) << rate;
     for (double spin : {double(INFINITY), double(NAN), -1.0, 1.0})
-        EXPECT_THROW(TouchLoop({hand.touch.get()}, {.spin = spin}), Error) << spin;
+        EXPECT_THROW(TouchLoop({one.touch.get()}, {.spin = spin}), Error) << spin;
     EXPECT_THROW(TouchLoop({nullptr}), Error);
 }
 

@@ -19,25 +19,25 @@ struct Clocked {
     DeviceSpec device;
     SafetySettings settings;
     double rate = 1000, time = 0;
-    Hand hand = {};
+    DeviceState state = {};
     Safety safety{device, settings};
-    dvec3 force = dvec3(0);
+    vec3 force = vec3(0);
     double sharpest = 0;  // N/s
 
     explicit Clocked(double r = 1000, SafetySettings s = {}) : settings(s), rate(r), safety(device, s) {}
 
-    dvec3 tick(dvec3 wanted, bool fresh = true, dvec3 velocity = dvec3(0)) {
+    vec3 tick(vec3 wanted, bool fresh = true, dvec3 velocity = dvec3(0)) {
         time += 1 / rate;
-        if (fresh) hand.time = time;
-        const dvec3 before = force;
-        force = safety.allow(wanted, hand, velocity, dvec3(0), time);
+        if (fresh) state.time = time;
+        const vec3 before = force;
+        force = safety.allow({wanted}, state, velocity, dvec3(0), time).force;
         EXPECT_TRUE(std::isfinite(force.x + force.y + force.z));
-        EXPECT_LE(glm::length(force), safety.peak_force() * (1 + 1e-9));
-        sharpest = std::max(sharpest, glm::distance(force, before) * rate);
+        EXPECT_LE(glm::length(force), safety.peak_force() * (1 + 1e-6));
+        sharpest = std::max(sharpest, double(glm::distance(force, before)) * rate);
         return force;
     }
     void arm() {
-        for (int i = 0; i < int(1.2 * rate); ++i) tick(dvec3(0));
+        for (int i = 0; i < int(1.2 * rate); ++i) tick(vec3(0));
         EXPECT_EQ(safety.held(), Held::no);
     }
     // How long it takes from now on until there is no force, s.
@@ -46,7 +46,7 @@ struct Clocked {
         const double start = time;
         for (int i = 0; i < rate; ++i) {
             some();
-            if (force == dvec3(0)) return time - start;
+            if (force == vec3(0)) return time - start;
         }
         return 1;
     }
@@ -55,30 +55,30 @@ struct Clocked {
 TEST(Safety, BeginsWithNothingUntilLittleIsWantedAndGrowsInASecond) {
     for (double rate : {250.0, 1000.0, 4000.0}) {
         Clocked c(rate);
-        for (int i = 0; i < rate; ++i) EXPECT_EQ(c.tick(dvec3(0, 0.5, 0)), dvec3(0));
+        for (int i = 0; i < rate; ++i) EXPECT_EQ(c.tick(vec3(0, 0.5f, 0)), vec3(0));
         EXPECT_EQ(c.safety.held(), Held::waiting);
-        for (int i = 0; i <= 0.02 * rate; ++i) EXPECT_LE(c.tick(dvec3(0, 0.05, 0)).y, 0.001);
+        for (int i = 0; i <= 0.02 * rate; ++i) EXPECT_LE(c.tick(vec3(0, 0.05f, 0)).y, 0.001);
         const double begin = c.time;
         while (c.time < begin + 2) {
-            c.tick(dvec3(0, 0.5, 0));
+            c.tick(vec3(0, 0.5f, 0));
             const double right = 0.5 * std::min(c.time - begin, 1.0);
             EXPECT_LE(std::abs(c.force.y - right), 0.01);
         }
         EXPECT_EQ(c.safety.held(), Held::no);
-        EXPECT_EQ(c.force, dvec3(0, 0.5, 0));
+        EXPECT_EQ(c.force, vec3(0, 0.5f, 0));
     }
 }
 
 TEST(Safety, LimitsKeepTheDirectionAndTheRateOfChange) {
     std::mt19937 random(1);
-    std::normal_distribution<double> any;
+    std::normal_distribution<float> any;
     Clocked c;
     c.arm();
-    const dvec3 way = glm::normalize(dvec3(1, -2, 0.5));
-    for (int i = 0; i < 20; ++i) c.tick(50.0 * way);
-    EXPECT_LE(glm::distance(c.force, c.safety.peak_force() * way), 1e-9);
-    for (int i = 0; i < 5000; ++i) c.tick(10.0 * dvec3(any(random), any(random), any(random)));
-    EXPECT_LE(c.sharpest, c.safety.peak_force() / c.settings.fall * (1 + 1e-9));
+    const vec3 way = glm::normalize(vec3(1, -2, 0.5f));
+    for (int i = 0; i < 20; ++i) c.tick(50.0f * way);
+    EXPECT_LE(glm::distance(c.force, float(c.safety.peak_force()) * way), 1e-6);
+    for (int i = 0; i < 5000; ++i) c.tick(10.0f * vec3(any(random), any(random), any(random)));
+    EXPECT_LE(c.sharpest, c.safety.peak_force() / c.settings.slew_time * (1 + 1e-5));
 }
 
 TEST(Safety, HoldsTheMeanSquareToWhatTheDeviceCanStand) {
@@ -87,7 +87,7 @@ TEST(Safety, HoldsTheMeanSquareToWhatTheDeviceCanStand) {
     double square = 0;
     const int long_time = 60'000;
     for (int i = 0; i < long_time; ++i) {
-        const double f = glm::length(c.tick(dvec3(0, 0, 3.3)));
+        const double f = glm::length(c.tick(vec3(0, 0, 3.3f)));
         if (i >= long_time / 2) square += f * f;
     }
     const double lasting = c.device.lasting_force;
@@ -96,38 +96,38 @@ TEST(Safety, HoldsTheMeanSquareToWhatTheDeviceCanStand) {
     // A small one goes on as long as one likes.
     Clocked small;
     small.arm();
-    for (int i = 0; i < 30'000; ++i) small.tick(dvec3(0, 0.7, 0));
-    EXPECT_EQ(small.force, dvec3(0, 0.7, 0));
+    for (int i = 0; i < 30'000; ++i) small.tick(vec3(0, 0.7f, 0));
+    EXPECT_EQ(small.force, vec3(0, 0.7f, 0));
 }
 
 TEST(Safety, WhatIsNotANumberIsNothing) {
     for (int what = 0; what < 4; ++what) {
         Clocked c;
         c.arm();
-        for (int i = 0; i < 20; ++i) c.tick(dvec3(0, 2, 0));
-        EXPECT_EQ(c.force, dvec3(0, 2, 0));
+        for (int i = 0; i < 20; ++i) c.tick(vec3(0, 2, 0));
+        EXPECT_EQ(c.force, vec3(0, 2, 0));
         const double zero = c.until_nothing([&] {
-            if (what == 0) c.tick(dvec3(nan, 0, 0));
-            if (what == 1) c.tick(dvec3(0, std::numeric_limits<double>::infinity(), 0));
-            c.hand.position = what == 2 ? vec3(0, NAN, 0) : vec3(0);
-            if (what == 2) c.tick(dvec3(0, 2, 0));
+            if (what == 0) c.tick(vec3(NAN, 0, 0));
+            if (what == 1) c.tick(vec3(0, INFINITY, 0));
+            c.state.pose.place = what == 2 ? dvec3(0, NAN, 0) : dvec3(0);
+            if (what == 2) c.tick(vec3(0, 2, 0));
             if (what == 3) {
                 c.time += 0.001;
-                c.hand.time = nan;
-                c.force = c.safety.allow(dvec3(0, 2, 0), c.hand, dvec3(0), dvec3(0), c.time);
+                c.state.time = nan;
+                c.force = c.safety.allow({vec3(0, 2, 0)}, c.state, dvec3(0), dvec3(0), c.time).force;
             }
         });
         EXPECT_LE(zero, 0.025) << what;
         EXPECT_EQ(c.safety.last_reason(), Held::not_finite) << what;
-        c.hand.position = vec3(0);
-        c.hand.time = c.time;
+        c.state.pose.place = dvec3(0);
+        c.state.time = c.time;
         // It comes back by a new ramp, and only once little is wanted.
-        for (int i = 0; i < 100; ++i) EXPECT_EQ(c.tick(dvec3(0, 2, 0)), dvec3(0));
-        c.tick(dvec3(0));  // a moment is not enough
-        for (int i = 0; i < 100; ++i) EXPECT_EQ(c.tick(dvec3(0, 2, 0)), dvec3(0));
-        for (int i = 0; i < 21; ++i) c.tick(dvec3(0));
+        for (int i = 0; i < 100; ++i) EXPECT_EQ(c.tick(vec3(0, 2, 0)), vec3(0));
+        c.tick(vec3(0));  // a moment is not enough
+        for (int i = 0; i < 100; ++i) EXPECT_EQ(c.tick(vec3(0, 2, 0)), vec3(0));
+        for (int i = 0; i < 21; ++i) c.tick(vec3(0));
         EXPECT_EQ(c.safety.held(), Held::ramping);
-        for (int i = 0; i < 500; ++i) c.tick(dvec3(0, 2, 0));
+        for (int i = 0; i < 500; ++i) c.tick(vec3(0, 2, 0));
         EXPECT_LE(std::abs(c.force.y - 1), 0.02);
     }
 }
@@ -135,11 +135,11 @@ TEST(Safety, WhatIsNotANumberIsNothing) {
 TEST(Safety, OldSamplesFadeInTwentyMilliseconds) {
     Clocked c;
     c.arm();
-    for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 1, 0));
-    const double start = c.hand.time;
+    for (int i = 0; i < 30; ++i) c.tick(vec3(0, 1, 0));
+    const double start = c.state.time;
     double last = 1;
     while (c.time < start + 0.03) {
-        c.tick(dvec3(0, 1, 0), false);
+        c.tick(vec3(0, 1, 0), false);
         EXPECT_LE(c.force.y, last + 1e-12);
         if (c.time - start <= 0.003 - 1e-9) EXPECT_EQ(c.force.y, 1);
         if (c.time - start >= 0.0231) EXPECT_EQ(c.force.y, 0);
@@ -151,17 +151,17 @@ TEST(Safety, OldSamplesFadeInTwentyMilliseconds) {
 TEST(Safety, AHandThatJumpsIsLetGoOf) {
     Clocked c;
     c.arm();
-    for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 1, 0));
-    c.hand.position.x += 0.05f;
-    const double zero = c.until_nothing([&] { c.tick(dvec3(0, 20, 0)); });
+    for (int i = 0; i < 30; ++i) c.tick(vec3(0, 1, 0));
+    c.state.pose.place.x += 0.05;
+    const double zero = c.until_nothing([&] { c.tick(vec3(0, 20, 0)); });
     EXPECT_LE(zero, 0.025);
     EXPECT_EQ(c.safety.last_reason(), Held::jumped);
     // One that is moved fast is not.
     Clocked fast;
     fast.arm();
     for (int i = 0; i < 300; ++i) {
-        fast.hand.position.x += 0.002f;
-        fast.tick(dvec3(0));
+        fast.state.pose.place.x += 0.002;
+        fast.tick(vec3(0));
     }
     EXPECT_EQ(fast.safety.held(), Held::no);
 }
@@ -169,11 +169,11 @@ TEST(Safety, AHandThatJumpsIsLetGoOf) {
 TEST(Safety, WhatIsSetAnewRampsAnew) {
     Clocked c;
     c.arm();
-    for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 1, 0));
-    ++c.hand.placed;
-    c.tick(dvec3(0, 1, 0));
+    for (int i = 0; i < 30; ++i) c.tick(vec3(0, 1, 0));
+    ++c.state.placed;
+    c.tick(vec3(0, 1, 0));
     EXPECT_EQ(c.safety.held(), Held::placed);
-    EXPECT_LE(c.until_nothing([&] { c.tick(dvec3(0, 1, 0)); }), 0.025);
+    EXPECT_LE(c.until_nothing([&] { c.tick(vec3(0, 1, 0)); }), 0.025);
 }
 
 // A wall whose spring pushes late gives energy out; with the observer a free hand does not gain any.
@@ -183,7 +183,7 @@ TEST(Safety, APassiveWallGivesNoEnergyOut) {
         settings.ramp = 0;
         settings.small_force = 1e9;
         settings.calm = 0;
-        settings.fall = 1e-6;
+        settings.slew_time = 1e-6;
         settings.most_damping = observed ? 50 : 0;
         Clocked c(1000, settings);
         const double mass = 0.1, stiffness = 1000, dt = 0.001;
@@ -193,8 +193,8 @@ TEST(Safety, APassiveWallGivesNoEnergyOut) {
         for (int i = 0; i < 2000; ++i) {
             std::rotate(late.begin(), late.begin() + 1, late.end());
             late.back() = x < 0 ? -stiffness * x : 0;
-            c.hand.position = vec3(0, float(x), 0);
-            const dvec3 f = c.tick(dvec3(0, late.front(), 0), true, dvec3(0, v, 0));
+            c.state.pose.place = dvec3(0, x, 0);
+            const dvec3 f(c.tick(vec3(0, float(late.front()), 0), true, dvec3(0, v, 0)));
             v += f.y / mass * dt;
             x += v * dt;
             fastest_out = std::max(fastest_out, v);
@@ -210,22 +210,22 @@ TEST(Safety, AClockThatStopsOrTurnsBackLetsGo) {
     for (double step : {0.1, -0.5, 1e9}) {
         Clocked c;
         c.arm();
-        for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 1, 0));
+        for (int i = 0; i < 30; ++i) c.tick(vec3(0, 1, 0));
         c.time += step;
-        c.hand.time = c.time;
-        EXPECT_EQ(c.safety.allow(dvec3(0, 1, 0), c.hand, dvec3(0), dvec3(0), c.time), dvec3(0));
+        c.state.time = c.time;
+        EXPECT_EQ(c.safety.allow({vec3(0, 1, 0)}, c.state, dvec3(0), dvec3(0), c.time), Wrench{});
         EXPECT_EQ(c.safety.last_reason(), Held::stalled);
-        c.force = dvec3(0);
-        for (int i = 0; i < 100; ++i) EXPECT_EQ(c.tick(dvec3(0, 1, 0)), dvec3(0));
+        c.force = vec3(0);
+        for (int i = 0; i < 100; ++i) EXPECT_EQ(c.tick(vec3(0, 1, 0)), vec3(0));
     }
 }
 
 TEST(Safety, ASampleFromTheFutureIsNoBetterThanAnOldOne) {
     Clocked c;
     c.arm();
-    for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 1, 0));
-    c.hand.time = 1e6;
-    EXPECT_LE(c.until_nothing([&] { c.tick(dvec3(0, 1, 0), false); }), 0.025);
+    for (int i = 0; i < 30; ++i) c.tick(vec3(0, 1, 0));
+    c.state.time = 1e6;
+    EXPECT_LE(c.until_nothing([&] { c.tick(vec3(0, 1, 0), false); }), 0.025);
     EXPECT_EQ(c.safety.last_reason(), Held::stale);
 }
 
@@ -234,7 +234,7 @@ TEST(Safety, EachSettingIsChecked) {
     constexpr double inf = std::numeric_limits<double>::infinity();
     double SafetySettings::*const all[] = {
         &SafetySettings::peak_force,   &SafetySettings::lasting_force, &SafetySettings::warm_up,
-        &SafetySettings::fall,         &SafetySettings::small_force,   &SafetySettings::calm,
+        &SafetySettings::slew_time,    &SafetySettings::small_force,   &SafetySettings::calm,
         &SafetySettings::ramp,         &SafetySettings::fresh,         &SafetySettings::fade,
         &SafetySettings::fastest_hand, &SafetySettings::jump,          &SafetySettings::lost,
         &SafetySettings::store,        &SafetySettings::most_damping};
@@ -246,7 +246,7 @@ TEST(Safety, EachSettingIsChecked) {
             EXPECT_THROW(Safety({}, settings), Error) << (one == all[8]) << value;
         }
     // A force would go on for longer than anybody holds on to a device.
-    for (auto one : {&SafetySettings::fall, &SafetySettings::fresh, &SafetySettings::fade,
+    for (auto one : {&SafetySettings::slew_time, &SafetySettings::fresh, &SafetySettings::fade,
                      &SafetySettings::lost, &SafetySettings::jump})
         for (double value : {1e300, 1.01}) {
             SafetySettings settings;
@@ -267,18 +267,18 @@ TEST(Safety, EachSettingIsChecked) {
 TEST(Safety, WarmMotorsStayWarm) {
     Clocked first;
     first.arm();
-    for (int i = 0; i < 30'000; ++i) first.tick(dvec3(0, 0, 3.3));
+    for (int i = 0; i < 30'000; ++i) first.tick(dvec3(0, 0, 3.3f));
     const Warmth warmth = first.safety.warmth();
     EXPECT_NEAR(warmth.square, 0.9 * 0.9, 0.05);
     for (double later : {0.001, 60.0}) {
         SafetySettings settings;
         settings.calm = settings.ramp = 0;
         Safety second({}, settings, warmth);
-        dvec3 force(0);
+        vec3 force(0);
         for (int i = 0; i < 50; ++i) {
             const double now = warmth.time + later + i * 1e-3;
-            const Hand hand{.time = now};
-            force = second.allow(dvec3(0, 0, i < 3 ? 0 : 3.3), hand, dvec3(0), dvec3(0), now);
+            const DeviceState state{.time = now};
+            force = second.allow({vec3(0, 0, i < 3 ? 0 : 3.3f)}, state, dvec3(0), dvec3(0), now).force;
         }
         if (later < 1)
             EXPECT_LE(glm::length(force), 1.2);
@@ -287,22 +287,69 @@ TEST(Safety, WarmMotorsStayWarm) {
     }
 }
 
+// A torque hurts as a force does, and has the same limits: here of 0.4 N·m for a moment and 0.1 for long.
+TEST(Safety, TorquesAreBoundedAsForcesAre) {
+    const DeviceSpec device{.peak_torque = 0.4f, .lasting_torque = 0.1f};
+    const SafetySettings settings;
+    Safety safety(device, settings);
+    double time = 0, square = 0;
+    Wrench last;
+    auto tick = [&](const Wrench& wanted) {
+        time += 1e-3;
+        const Wrench now = safety.allow(wanted, {.time = time}, dvec3(0), dvec3(0), time);
+        EXPECT_LE(glm::length(now.torque), 0.4f * (1 + 1e-6f));
+        EXPECT_LE(glm::distance(now.torque, last.torque), 0.4f / 8 * (1 + 1e-5f));
+        return last = now;
+    };
+    // As a force, it begins when little is wanted, and grows in a second.
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(tick({vec3(0), vec3(0.3f, 0, 0)}), Wrench{});
+    for (int i = 0; i < 21; ++i) tick({});
+    for (int i = 0; i < 500; ++i) tick({vec3(1, 0, 0), vec3(0.1f, 0, 0)});
+    EXPECT_NEAR(last.force.x, 0.5f, 0.01f);
+    EXPECT_NEAR(last.torque.x, 0.05f, 0.001f);
+    for (int i = 0; i < 100; ++i) tick({vec3(0), vec3(0, 7, 0)});
+    EXPECT_NEAR(last.torque.y, 0.4f, 1e-6f);
+    for (int i = 0; i < 60'000; ++i) {
+        const float turns = glm::length(tick({vec3(0), vec3(0, 0, 7)}).torque);
+        if (i >= 30'000) square += double(turns * turns) / 30'000;
+    }
+    EXPECT_NEAR(std::sqrt(square), 0.095, 0.006);
+    EXPECT_NE(tick({vec3(0), vec3(0, 0, 7)}), Wrench{});
+    for (int i = 0; i < 25; ++i) tick({vec3(0), vec3(0, NAN, 0)});
+    EXPECT_EQ(last, Wrench{});
+    EXPECT_EQ(safety.last_reason(), Held::not_finite);
+    // A device that turns nobody is told nothing of it; half of the force is half of the torque.
+    for (const auto& [spec, peak] : {std::pair{DeviceSpec{}, 0.0f}, {device, 0.2f}}) {
+        SafetySettings at_once;
+        at_once.calm = at_once.ramp = 0;
+        at_once.peak_force = 0.5 * double(spec.peak_force);
+        Safety other(spec, at_once);
+        for (int i = 1; i < 100; ++i)
+            last = other.allow({vec3(0), i < 3 ? vec3(0) : vec3(0, 1, 0)}, {.time = i * 1e-3}, dvec3(0),
+                               dvec3(0), i * 1e-3);
+        EXPECT_NEAR(last.torque.y, peak, 1e-6f);
+    }
+    EXPECT_THROW(Safety({.peak_torque = 1}, {}), Error);
+    EXPECT_THROW(Safety({.peak_torque = NAN, .lasting_torque = 1}, {}), Error);
+    EXPECT_THROW(Safety({.workspace = 0}, {}), Error);
+}
+
 TEST(Safety, NoForceBridgesAPlacing) {
     Clocked c;
     c.arm();
-    for (int i = 0; i < 30; ++i) c.tick(dvec3(0, 2, 0));
-    ++c.hand.placed;
-    EXPECT_EQ(c.tick(dvec3(0, 2, 0)), dvec3(0));
+    for (int i = 0; i < 30; ++i) c.tick(vec3(0, 2, 0));
+    ++c.state.placed;
+    EXPECT_EQ(c.tick(vec3(0, 2, 0)), vec3(0));
 }
 
 TEST(Safety, NumbersThatAreNoneTogetherAreNothing) {
     Clocked c;
     c.arm();
-    for (double large : {1e308, -1e308, 1e300}) {
-        for (int i = 0; i < 3; ++i) c.tick(dvec3(large, large, -large), true, dvec3(large));
-        c.hand.position = vec3(3e38f, -3e38f, 3e38f);
-        for (int i = 0; i < 3; ++i) c.tick(dvec3(0, 1, 0), true, dvec3(1e300));
-        c.hand.position = vec3(0);
+    for (float large : {3e38f, -3e38f, 1e30f}) {
+        for (int i = 0; i < 3; ++i) c.tick(vec3(large, large, -large), true, dvec3(1e308));
+        c.state.pose.place = dvec3(1e308, -1e308, 1e308);
+        for (int i = 0; i < 3; ++i) c.tick(vec3(0, 1, 0), true, dvec3(1e300));
+        c.state.pose.place = dvec3(0);
     }
 }
 

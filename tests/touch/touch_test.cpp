@@ -31,9 +31,9 @@ Patch all_of(const Mesh& mesh) {
 class Watched final : public Decorator {
  public:
     using Decorator::Decorator;
-    bool write(vec3 force) noexcept override {
-        written = force;
-        return Decorator::write(force);
+    bool write(const Wrench& wrench) noexcept override {
+        written = wrench.force;
+        return Decorator::write(wrench);
     }
     void stop() noexcept override {
         written = vec3(0);
@@ -53,8 +53,8 @@ class Motor final : public Decorator {
         ++opened;
         Decorator::open();
     }
-    bool write(vec3 force) noexcept override {
-        holds = force;
+    bool write(const Wrench& wrench) noexcept override {
+        holds = wrench.force;
         return true;
     }
     void stop() noexcept override { holds = vec3(0); }
@@ -236,7 +236,9 @@ TEST(Touch, ADeviceThatDoesNotAnswerHoldsNoForce) {
     class Mute final : public Decorator {
      public:
         using Decorator::Decorator;
-        bool read(double now, Hand& hand) noexcept override { return !mute && Decorator::read(now, hand); }
+        bool read(double now, DeviceState& state) noexcept override {
+            return !mute && Decorator::read(now, state);
+        }
         bool mute = false;
     };
     const Mesh mesh = slab();
@@ -608,7 +610,7 @@ TEST(Touch, RefusesSettingsThatAreNone) {
     EXPECT_THROW(made({.radius = NAN}), Error);
     EXPECT_THROW(made({.feels = {{.stiffness = NAN}}}), Error);
     EXPECT_THROW(made({.feels = {{.friction = {-1, 0}}}}), Error);
-    EXPECT_THROW(made({.safety = {.fall = 0}}), Error);
+    EXPECT_THROW(made({.safety = {.slew_time = 0}}), Error);
     EXPECT_THROW(made({}, {.peak_force = NAN}), Error);
     EXPECT_THROW(made({}, {.lasting_force = 0}), Error);
     EXPECT_THROW(made({}, {.stiffness = NAN}), Error);

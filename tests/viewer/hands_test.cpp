@@ -324,7 +324,7 @@ TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
     wait_until(viewer, 1, [&] { return viewer.feeling()->felt().time != 0; });
-    EXPECT_TRUE(glm::distance(viewer.feeling()->felt().hand, vec3(0.1f, 0.2f, 0.02f)) < 1e-4f);
+    EXPECT_TRUE(glm::distance(viewer.feeling()->felt().pose.place, dvec3(0.1, 0.2, 0.02)) < 1e-4);
 }
 
 TEST_F(ViewerTest, ADevicePressesAndPullsAsWell) {

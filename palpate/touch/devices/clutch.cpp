@@ -9,31 +9,31 @@ Clutch::Clutch(std::unique_ptr<Device> inner, unsigned buttons)
 
 void Clutch::open() {
     known_ = let_go_ = false;
-    offset_ = vec3(0);
+    offset_ = dvec3(0);
     Decorator::open();
 }
 
-bool Clutch::read(double now, Hand& hand) noexcept {
-    Hand real;
+bool Clutch::read(double now, DeviceState& state) noexcept {
+    DeviceState real;
     if (!Decorator::read(now, real)) return false;
-    // A position that is no number goes by: an offset to it would never end.
-    const bool sound = std::isfinite(dot(real.position, real.position));
+    // A place that is not finite goes by: an offset to it would never end.
+    const bool sound = std::isfinite(dot(real.pose.place, real.pose.place));
     const bool let_go = held_ || (real.buttons & buttons_) != 0;
     if (sound) {
         if (let_go_ && !let_go) {
-            offset_ = at_ - real.position;
+            offset_ = at_.place - real.pose.place;
             ++placed_;
         }
-        if (!let_go || !known_) at_ = real.position + offset_;
+        if (!let_go || !known_) at_ = {real.pose.place + offset_, real.pose.turn};
         known_ = true;
         let_go_ = let_go;
-        real.position = at_;
+        real.pose = at_;
     }
     real.placed += placed_;
-    hand = real;
+    state = real;
     return true;
 }
 
-bool Clutch::write(vec3 force) noexcept { return Decorator::write(let_go_ ? vec3(0) : force); }
+bool Clutch::write(const Wrench& wrench) noexcept { return Decorator::write(let_go_ ? Wrench{} : wrench); }
 
 }  // namespace palpate

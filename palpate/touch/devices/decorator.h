@@ -18,8 +18,8 @@ class Decorator : public Device {
 
     DeviceSpec spec() const override { return inner_->spec(); }
     void open() override { inner_->open(); }
-    bool read(double now, Hand& hand) noexcept override { return inner_->read(now, hand); }
-    bool write(vec3 force) noexcept override { return inner_->write(force); }
+    bool read(double now, DeviceState& state) noexcept override { return inner_->read(now, state); }
+    bool write(const Wrench& wrench) noexcept override { return inner_->write(wrench); }
     void stop() noexcept override { inner_->stop(); }
 
  private:

@@ -24,7 +24,7 @@ const Fault* Faulty::due(FaultKind kind) const {
     return nullptr;
 }
 
-bool Faulty::read(double now, Hand& hand) noexcept {
+bool Faulty::read(double now, DeviceState& state) noexcept {
     if (!start_) start_ = now;
     time_ = now - *start_;
     if (const Fault* stall = due(FaultKind::stall)) sleep_(stall->to - time_);
@@ -33,20 +33,20 @@ bool Faulty::read(double now, Hand& hand) noexcept {
         return false;
     }
     if (due(FaultKind::freeze) && last_) {
-        hand = *last_;
+        state = *last_;
         return true;
     }
-    Hand read;
+    DeviceState read;
     if (!Decorator::read(now, read)) return false;
-    last_ = hand = read;
-    if (due(FaultKind::no_number)) hand.position = vec3(std::numeric_limits<float>::quiet_NaN());
-    if (const Fault* fault = due(FaultKind::jump)) hand.position += fault->jump;
+    last_ = state = read;
+    if (due(FaultKind::no_number)) state.pose.place = dvec3(std::numeric_limits<double>::quiet_NaN());
+    if (const Fault* fault = due(FaultKind::jump)) state.pose.place += dvec3(fault->jump);
     return true;
 }
 
-bool Faulty::write(vec3 force) noexcept {
+bool Faulty::write(const Wrench& wrench) noexcept {
     if (due(FaultKind::vanish) || due(FaultKind::refuse)) return false;
-    return Decorator::write(force);
+    return Decorator::write(wrench);
 }
 
 }  // namespace palpate

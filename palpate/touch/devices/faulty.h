@@ -8,12 +8,12 @@
 namespace palpate {
 
 enum class FaultKind {
-    no_number,  // the position is NaN
-    jump,       // the position is off by `jump`
+    no_number,  // the place is NaN
+    jump,       // the place is off by `jump`
     vanish,     // the device is gone, and its motors have no current
     stall,      // read() does not return before it is over
     freeze,     // the last sample again and again
-    refuse,     // write() fails, and the device keeps the force that it had
+    refuse,     // write() fails, and the device keeps what it pushed with
 };
 
 struct Fault {
@@ -31,8 +31,8 @@ class Faulty final : public Decorator {
            std::function<void(double seconds)> sleep);
 
     void open() override;
-    bool read(double now, Hand& hand) noexcept override;
-    bool write(vec3 force) noexcept override;
+    bool read(double now, DeviceState& state) noexcept override;
+    bool write(const Wrench& wrench) noexcept override;
 
  private:
     // The fault of a kind that is due, or null.
@@ -40,9 +40,9 @@ class Faulty final : public Decorator {
 
     std::vector<Fault> faults_;
     std::function<void(double)> sleep_;
-    std::optional<double> start_;  // of the loop's clock
-    double time_ = 0;              // s since then, at the last read
-    std::optional<Hand> last_;     // before any fault
+    std::optional<double> start_;      // of the loop's clock
+    double time_ = 0;                  // s since then, at the last read
+    std::optional<DeviceState> last_;  // before any fault
 };
 
 }  // namespace palpate

@@ -64,7 +64,7 @@ void Mouse::open() {
     next_ = 0;
 }
 
-bool Mouse::read(double now, Hand& hand) noexcept {
+bool Mouse::read(double now, DeviceState& state) noexcept {
     if (!start_) {
         start_ = time_ = now;
         target_ = place();
@@ -86,10 +86,10 @@ bool Mouse::read(double now, Hand& hand) noexcept {
         take(told, told.event.time, now, is_first);
     }
     advance(now);
-    hand = {.position = vec3(target_ + swing_.offset),
-            .time = now,
-            .buttons = told_.event.buttons,
-            .placed = placed_};
+    state = {.pose = {.place = target_ + swing_.offset},
+             .time = now,
+             .buttons = told_.event.buttons,
+             .placed = placed_};
     return true;
 }
 

@@ -14,7 +14,7 @@ namespace palpate {
 struct PointerEvent {
     double time = 0;          // s, on the loop's clock
     vec2 position = vec2(0);  // pixels to the right and down from the picture's upper left corner
-    unsigned buttons = 0;     // as in Hand
+    unsigned buttons = 0;     // as in DeviceState
     float wheel = 0;          // notches in all so far, away from the person
 };
 
@@ -50,8 +50,8 @@ class Mouse final : public Device {
 
     DeviceSpec spec() const override { return {.name = "mouse"}; }
     void open() override;
-    bool read(double now, Hand& hand) noexcept override;
-    bool write(vec3) noexcept override { return true; }
+    bool read(double now, DeviceState& state) noexcept override;
+    bool write(const Wrench&) noexcept override { return true; }
     void stop() noexcept override {}
 
  private:

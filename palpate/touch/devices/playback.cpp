@@ -14,14 +14,14 @@ void Playback::open() {
     for (std::size_t i = 0; i < log_.ticks.size(); ++i) {
         const Tick& tick = log_.ticks[i];
         const bool rises = i == 0 || tick.now >= log_.ticks[i - 1].now;
-        if (!std::isfinite(tick.now) || !std::isfinite(tick.hand.time) || !rises)
+        if (!std::isfinite(tick.now) || !std::isfinite(tick.state.time) || !rises)
             throw Error("a log whose time does not go on", log_.device, "give its ticks in their order");
     }
     later_.reset();
     at_ = 0;
 }
 
-bool Playback::read(double now, Hand& hand) noexcept {
+bool Playback::read(double now, DeviceState& state) noexcept {
     const auto& ticks = log_.ticks;
     if (!later_) later_ = now - ticks.front().now;
     const double then = now - *later_;
@@ -31,13 +31,15 @@ bool Playback::read(double now, Hand& hand) noexcept {
     const bool over = at_ + 1 == ticks.size();
     const Tick& next = over ? last : ticks[at_ + 1];
     const double part = over ? 0 : (then - last.now) / (next.now - last.now);
-    hand = last.hand;
-    if (part > 0 && next.hand.placed == last.hand.placed)
-        hand.position = glm::mix(last.hand.position, next.hand.position, float(part));
+    state = last.state;
+    if (part > 0 && next.state.placed == last.state.placed) {
+        const Pose &from = last.state.pose, &to = next.state.pose;
+        state.pose = {glm::mix(from.place, to.place, part), glm::slerp(from.turn, to.turn, part)};
+    }
     // As old as the samples were then; after the last, as old as that one was.
     const double sampled =
-        over ? last.hand.time + (then - last.now) : glm::mix(last.hand.time, next.hand.time, part);
-    hand.time = std::min(sampled + *later_, now);
+        over ? last.state.time + (then - last.now) : glm::mix(last.state.time, next.state.time, part);
+    state.time = std::min(sampled + *later_, now);
     return true;
 }
 

@@ -14,20 +14,20 @@ Recorder::Recorder(std::unique_ptr<Device> inner, double seconds, double rate) :
     log_.ticks.reserve(most_);
 }
 
-bool Recorder::read(double now, Hand& hand) noexcept {
+bool Recorder::read(double now, DeviceState& state) noexcept {
     noted_ = false;
-    if (!Decorator::read(now, hand)) return false;
+    if (!Decorator::read(now, state)) return false;
     noted_ = log_.ticks.size() < most_;
     if (noted_)
-        log_.ticks.push_back({now, hand, vec3(0)});
+        log_.ticks.push_back({now, state, {}});
     else
         ++missed_;
     return true;
 }
 
-bool Recorder::write(vec3 force) noexcept {
-    if (noted_) log_.ticks.back().force = force;
-    return Decorator::write(force);
+bool Recorder::write(const Wrench& wrench) noexcept {
+    if (noted_) log_.ticks.back().wrench = wrench;
+    return Decorator::write(wrench);
 }
 
 }  // namespace palpate

@@ -13,8 +13,8 @@ class Recorder final : public Decorator {
     /// is no length.
     Recorder(std::unique_ptr<Device> inner, double seconds, double rate = 1000);
 
-    bool read(double now, Hand& hand) noexcept override;
-    bool write(vec3 force) noexcept override;
+    bool read(double now, DeviceState& state) noexcept override;
+    bool write(const Wrench& wrench) noexcept override;
 
     // While no loop runs:
     const Log& log() const { return log_; }

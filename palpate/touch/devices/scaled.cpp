@@ -9,6 +9,14 @@ namespace {
 
 float forces(const Scale& scale) { return scale.forces > 0 ? scale.forces : 1 / scale.motion; }
 
+// A torque is a force on a lever, and levers are lengths.
+float torques(const Scale& scale) { return forces(scale) / scale.motion; }
+
+vec3 no_longer_than(float most, vec3 v) {
+    const float size = length(v);
+    return size > most ? v * (most / size) : v;
+}
+
 void check(const Scale& scale, const std::string& device) {
     const auto is_usable = [](float factor) { return factor >= 1e-6f && factor <= 1e6f; };
     if (!is_usable(scale.motion) || !(scale.forces == 0 || is_usable(scale.forces)) ||
@@ -32,34 +40,37 @@ void Scaled::set(const Scale& scale) {
 
 DeviceSpec Scaled::spec() const {
     DeviceSpec spec = Decorator::spec();
+    spec.workspace *= first_.motion;
     spec.peak_force /= forces(first_);
     spec.lasting_force /= forces(first_);
+    spec.peak_torque /= torques(first_);
+    spec.lasting_torque /= torques(first_);
     spec.stiffness /= forces(first_) * first_.motion;
     return spec;
 }
 
 void Scaled::open() {
     peak_force_ = Decorator::spec().peak_force;
+    peak_torque_ = Decorator::spec().peak_torque;
     Decorator::open();
 }
 
-bool Scaled::read(double now, Hand& hand) noexcept {
-    Hand real;
-    if (!Decorator::read(now, real)) return false;
+bool Scaled::read(double now, DeviceState& state) noexcept {
+    if (!Decorator::read(now, state)) return false;
     shared_.try_load(used_);  // else the next time
     const Scale& scale = used_.scale;
-    hand = real;
-    hand.position = scale.about + scale.motion * (real.position - scale.about);
-    hand.placed += used_.times;
-    hand.forces *= forces(scale) / forces(first_);
-    hand.motion *= scale.motion / first_.motion;
+    const dvec3 about(scale.about);
+    state.pose.place = about + double(scale.motion) * (state.pose.place - about);
+    state.placed += used_.times;
+    state.forces *= forces(scale) / forces(first_);
+    state.motion *= scale.motion / first_.motion;
     return true;
 }
 
-bool Scaled::write(vec3 force) noexcept {
-    force *= forces(used_.scale);
-    const float size = length(force);
-    return Decorator::write(size > peak_force_ ? force * (peak_force_ / size) : force);
+bool Scaled::write(const Wrench& wrench) noexcept {
+    const Scale& scale = used_.scale;
+    return Decorator::write({no_longer_than(peak_force_, forces(scale) * wrench.force),
+                             no_longer_than(peak_torque_, torques(scale) * wrench.torque)});
 }
 
 }  // namespace palpate

@@ -9,9 +9,9 @@ void Script::open() {
     start_.reset();
 }
 
-bool Script::read(double now, Hand& hand) noexcept {
+bool Script::read(double now, DeviceState& state) noexcept {
     if (!start_) start_ = now;
-    hand = {.position = position(path_, now - *start_), .time = now};
+    state = {.pose = pose(path_, now - *start_), .time = now};
     return true;
 }
 

@@ -11,10 +11,10 @@ class Script final : public Device {
  public:
     explicit Script(Path path);
 
-    DeviceSpec spec() const override { return {.name = "script"}; }
+    DeviceSpec spec() const override { return {.name = "script", .turns = true}; }
     void open() override;
-    bool read(double now, Hand& hand) noexcept override;
-    bool write(vec3) noexcept override { return true; }
+    bool read(double now, DeviceState& state) noexcept override;
+    bool write(const Wrench&) noexcept override { return true; }
     void stop() noexcept override {}
 
  private:

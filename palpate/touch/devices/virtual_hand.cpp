@@ -60,7 +60,7 @@ void VirtualHand::open() {
     start_.reset();
 }
 
-bool VirtualHand::read(double now, Hand& hand) noexcept {
+bool VirtualHand::read(double now, DeviceState& state) noexcept {
     if (!start_) {
         start_ = now;
         time_ = 0;
@@ -69,15 +69,15 @@ bool VirtualHand::read(double now, Hand& hand) noexcept {
     }
     advance(now - *start_);
     const double grid = settings_.resolution;
-    hand = {.position = vec3(grid > 0 ? grid * round(position_ / grid) : position_), .time = now};
+    state = {.pose = {.place = grid > 0 ? grid * round(position_ / grid) : position_}, .time = now};
     return true;
 }
 
-bool VirtualHand::write(vec3 force) noexcept {
+bool VirtualHand::write(const Wrench& wrench) noexcept {
     // Only a loop faster than any finds no room. Then the newest gives way, so that the order stays.
     if (count_ == waiting_.size()) --count_;
-    waiting_[(first_ + count_++) % waiting_.size()] = {time_ + settings_.delay,
-                                                       finite(force) ? force : vec3(0), stops_.load()};
+    waiting_[(first_ + count_++) % waiting_.size()] = {
+        time_ + settings_.delay, finite(wrench.force) ? wrench.force : vec3(0), stops_.load()};
     take_due();
     return true;
 }

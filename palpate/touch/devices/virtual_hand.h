@@ -34,8 +34,8 @@ class VirtualHand final : public Device {
 
     DeviceSpec spec() const override;
     void open() override;
-    bool read(double now, Hand& hand) noexcept override;
-    bool write(vec3 force) noexcept override;
+    bool read(double now, DeviceState& state) noexcept override;
+    bool write(const Wrench& wrench) noexcept override;
     void stop() noexcept override;
 
     // On the thread that reads:
