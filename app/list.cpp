@@ -13,6 +13,10 @@ void print_names() {
     for (const auto& n : names(E{})) fmt::print("{}\n", n.name);
 }
 
+void print_devices() {
+    for (const Driver& driver : drivers()) fmt::print("{:<8} {}\n", driver.name, driver.about);
+}
+
 void print_scenes() {
     for (const ShippedScene& scene : shipped_scenes()) fmt::print("{:<8} {}\n", scene.name, scene.about);
 }
@@ -28,6 +32,6 @@ void add_list(CLI::App& app) {
     add("backends", "where a body's motion can be computed", print_names<Backend>);
     add("integrators", "how it can be computed", print_names<Integrator>);
     add("mappings", "how a surface can follow the nodes", print_names<Mapping>);
-    add("devices", "where a tool's motion can come from", print_names<DeviceKind>);
+    add("devices", "where a tool's motion can come from", print_devices);
     add("scenes", "the scenes that come with Palpate", print_scenes);
 }

@@ -3,8 +3,8 @@
 #include "palpate/base/names.h"
 #include "palpate/run/experiment.h"
 #include "palpate/touch/devices/mouse.h"
+#include "palpate/touch/drivers.h"
 #include "palpate/touch/loop.h"
-#include "palpate/touch/make_device.h"
 
 #include <filesystem>
 #include <memory>

@@ -29,6 +29,13 @@ bool choose(const char* label, E& value) {
     return chosen;
 }
 
+void choose_device(std::string& name) {
+    if (!ImGui::BeginCombo("device", name.c_str())) return;
+    for (const Driver& one : drivers())
+        if (ImGui::Selectable(std::string(one.name).c_str(), one.name == name)) name = one.name;
+    ImGui::EndCombo();
+}
+
 // Whether a slider has moved, and whether it has been moving before: then both are one change.
 struct Slid {
     bool moved = false, again = false;
@@ -86,12 +93,13 @@ void show_hand(Viewer& viewer) {
         options.tip = millimetres / 1000;
     about("the radius of what presses, dents and pins");
     if (options.mode == Mode::pin) return;
-    choose("device", options.device);
+    choose_device(options.device);
     about("what moves the hand; a mouse is felt only where it dents");
-    if (options.device == DeviceKind::mouse) return;
+    const DeviceNeeds needs = driver(options.device).needs;
+    if (needs == DeviceNeeds::pointer) return;
     static char file[512] = "";
-    ImGui::InputTextWithHint(options.device == DeviceKind::playback ? "log" : "path",
-                             options.device == DeviceKind::playback ? "felt.csv" : "rows of t, x, y, z", file,
+    const bool log = needs == DeviceNeeds::log;
+    ImGui::InputTextWithHint(log ? "log" : "path", log ? "felt.csv" : "rows of t, x, y, z", file,
                              sizeof file);
     if (ImGui::IsItemDeactivatedAfterEdit()) options.device_file = file;
 }

@@ -203,10 +203,11 @@ void Viewer::reset_camera() {
 // ---- the hand that feels ----
 
 void Viewer::make_feeling_hand() {
-    // Whatever is no mouse needs a file, and waits for it to be named.
-    const bool by_mouse = options.device == DeviceKind::mouse && options.mode == Mode::dent;
+    // Whatever follows no pointer needs a file, and waits for it to be named.
+    const DeviceNeeds needs = driver(options.device).needs;
+    const bool by_mouse = needs == DeviceNeeds::pointer && options.mode == Mode::dent;
     const bool by_device =
-        options.device != DeviceKind::mouse && options.mode != Mode::pin && !options.device_file.empty();
+        needs != DeviceNeeds::pointer && options.mode != Mode::pin && !options.device_file.empty();
     const bool wanted = experiment_ && (by_mouse || by_device);
     HandSettings of;
     if (wanted)
@@ -227,13 +228,12 @@ void Viewer::make_feeling_hand() {
     if (!wanted) return;
     attempt([&] {
         DeviceSettings settings{.path = {}, .mouse = {.camera = camera(), .size = view_size()}, .log = {}};
-        if (options.device == DeviceKind::playback) settings.log = options.device_file;
-        if (options.device == DeviceKind::hand || options.device == DeviceKind::script)
-            settings.path = read_path(options.device_file);
-        auto device = make_device(options.device, settings);
+        if (needs == DeviceNeeds::log) settings.log = options.device_file;
+        if (needs == DeviceNeeds::path) settings.path = read_path(options.device_file);
+        auto device = driver(options.device).make(settings);
         vec3 start = settings.path.empty() ? camera().look_at : settings.path.front().position;
-        if (options.device == DeviceKind::mouse) {
-            mouse_ = static_cast<Mouse*>(device.get());
+        mouse_ = dynamic_cast<Mouse*>(device.get());
+        if (mouse_) {
             mouse_depth_ = glm::distance(camera().look_at, camera().eye);
             pointed_.reset();
             start = follow_pointer();  // so that it begins there and does not come from elsewhere
@@ -270,7 +270,7 @@ const Viewer::Stroke* Viewer::last_dent() const {
 // A device that is no mouse does what is chosen too: it presses wherever it is, or takes hold of what it
 // touches until its first button is pressed.
 void Viewer::follow_device() {
-    const bool acts = feeling_ && options.device != DeviceKind::mouse &&
+    const bool acts = feeling_ && driver(options.device).needs != DeviceNeeds::pointer &&
                       !experiment_->models().models.empty() &&
                       (options.mode == Mode::pull || options.mode == Mode::press);
     const Felt felt = acts ? feeling_->felt() : Felt{};

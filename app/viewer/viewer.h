@@ -60,8 +60,8 @@ struct Options {
     bool paused = false;
     bool stereo = false;  // side by side, for the papers' immersive displays
     Compared compared;
-    DeviceKind device = DeviceKind::mouse;  // of the hand
-    std::string device_file;                // its path, or its log
+    std::string device = "mouse";  // the name of its driver
+    std::string device_file;       // its path, or its log
 };
 
 enum class Button { left, middle, right };
@@ -166,7 +166,7 @@ class Viewer {
  private:
     enum class Drag { none, turn, pan, hold };
     struct HandSettings {
-        DeviceKind device = DeviceKind::mouse;
+        std::string device;
         std::string file;
         float tip = 0;  // m
         std::vector<Feel> feels = {};

@@ -69,6 +69,7 @@ Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& 
     Prepared prepared{std::move(source), std::move(changes), {}, {}};
     prepared.source.folder = std::filesystem::absolute(prepared.source.folder / ".");  // recordings travel
     prepared.scene = parse_scene(prepared.source, prepared.changes);
+    check_devices(prepared.scene);
     prepared.models = build(prepared.scene, progress);
     return prepared;
 }

@@ -1,8 +1,11 @@
 #include "palpate/run/probe.h"
 
 #include "palpate/base/error.h"
-#include "palpate/touch/make_device.h"
+#include "palpate/touch/drivers.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -18,6 +21,18 @@ std::vector<Feel> feels_of(const Scene& scene) {
     for (const BodyRecipe& recipe : scene.bodies) feels.push_back(recipe.feel);
     for (const BodyRecipe& recipe : scene.surfaces) feels.push_back(recipe.feel);
     return feels;
+}
+
+void check_devices(const Scene& scene) {
+    for (const ToolRecipe& tool : scene.tools) {
+        const bool known = std::ranges::any_of(drivers(), [&](const Driver& one) {
+            return one.name == tool.device && one.needs == DeviceNeeds::path;
+        });
+        if (!known)
+            throw Error(fmt::format("tool {}: no device \"{}\" that follows a path", tool.name, tool.device),
+                        tool.lines.where("device", scene.file),
+                        "there are " + names_of_drivers(DeviceNeeds::path));
+    }
 }
 
 Probe::Probe(const ToolRecipe& recipe, const Scene& scene)
@@ -36,7 +51,7 @@ void Probe::begin(double time, const std::vector<Skin>& skins) {
         point.position += origin_;
     }
     start_ = time;
-    touch_ = std::make_unique<Touch>(make_device(recipe_.device, {.path = std::move(path)}),
+    touch_ = std::make_unique<Touch>(driver(recipe_.device).make({.path = std::move(path)}),
                                      TouchSettings{.radius = recipe_.radius, .feels = feels_});
 }
 

@@ -10,6 +10,9 @@ namespace palpate {
 /// How all surfaces of a scene feel, in the order of the skins.
 std::vector<Feel> feels_of(const Scene& scene);
 
+/// Throws Error where a tool has a device that there is none of.
+void check_devices(const Scene& scene);
+
 /// A tool that is felt: a device along a scripted path, what pushes it back, and the dents that it leaves in
 /// pictures (2007). Its thousand ticks a second go by the run's own clock.
 class Probe {
@@ -32,8 +35,8 @@ class Probe {
     std::vector<Dent> dents(int surface, double time) const;
 
     vec3 centre() const { return vec3(felt_.pose.place); }  // m
-    double force() const { return force_; }     // N, mean over the last call
-    double depth() const { return depth_; }     // m, at its end
+    double force() const { return force_; }                 // N, mean over the last call
+    double depth() const { return depth_; }                 // m, at its end
 
  private:
     void begin(double time, const std::vector<Skin>& skins);

@@ -301,6 +301,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     report.threads = scene.simulation.threads;
     check_outputs(scene, settings);
 
+    check_devices(scene);
     const Models made = build(scene, progress);
     report.notes = notes_before(scene, made);
     const auto known_before = std::ptrdiff_t(report.notes.size());

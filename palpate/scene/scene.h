@@ -161,7 +161,7 @@ inline std::span<const Named<ToolKind>> names(ToolKind) {
 struct ToolRecipe {
     std::string name;
     ToolKind kind = ToolKind::press;
-    std::string device = "script";
+    std::string device = "script";  // of a dent: one that follows a path, by its name (touch/drivers.h)
     float radius = 0.01f;   // m; of a drag: how large it is drawn
     float stiffness = 400;  // N/m, see Press and Drag; 50 for a drag
     Path path;              // s, m; a file of rows or the rows themselves

@@ -5,6 +5,7 @@
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
 #include "palpate/run/run.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
@@ -103,16 +104,15 @@ path = [[0.5, 0, 0, 0, 0, 0, 0], [1.5, 0, 0, 0, 180, 0, 0]]
 // ---- colliders that move ----
 
 TEST(Play, AFrameOfMotionEndsAtThePose) {
-    const Pose from = pose({0, {0.1f, 0.2f, 0.3f}, {10, 20, 30}}), to = pose({1, {0.2f, 0, 0.1f}, {25, -20, 60}});
+    const Pose from = pose({0, {0.1f, 0.2f, 0.3f}, {10, 20, 30}}),
+               to = pose({1, {0.2f, 0, 0.1f}, {25, -20, 60}});
     const vec3 pivot(1, 2, 3);
     const double seconds = 1.0 / 60;
     const Motion motion = motion_between(from, to, pivot, seconds), end = after(motion, float(seconds));
     for (vec3 p : {vec3(0), vec3(0.1f, 0, 0), vec3(0, 0.3f, 0.2f)}) {
-        EXPECT_LT(
-            glm::distance(motion.position + motion.rotation * p, pivot + vec3(from.of(dvec3(p)))),
-            1e-6f);
-        EXPECT_LT(glm::distance(end.position + end.rotation * p, pivot + vec3(to.of(dvec3(p)))),
+        EXPECT_LT(glm::distance(motion.position + motion.rotation * p, pivot + vec3(from.of(dvec3(p)))),
                   1e-6f);
+        EXPECT_LT(glm::distance(end.position + end.rotation * p, pivot + vec3(to.of(dvec3(p)))), 1e-6f);
     }
     const Motion still = motion_between(to, to, pivot, seconds);
     EXPECT_EQ(still.velocity, vec3(0));
@@ -351,6 +351,14 @@ TEST(Play, AnArmIsPushedBackWhereAScriptIsNot) {
     const Report report = run(felt_scene(scratch, "{ stiffness = 300 }", "hand"), {});
     EXPECT_LE(report.tools[0].deepest_indentation, 0.0025);
     EXPECT_GE(report.tools[0].deepest_indentation, 0.0005);
+}
+
+TEST(Play, ADeviceThatThereIsNoneOfIsRefused) {
+    Scratch scratch;
+    const std::string said = refusal([&] { run(felt_scene(scratch, "{ stiffness = 300 }", "spoon"), {}); });
+    EXPECT_EQ(
+        said,
+        "tool tool1: no device \"spoon\" that follows a path in test.toml, line 10; there are hand, script");
 }
 
 TEST(Play, WhatIsDeeperThanItYieldsStaysInThePicture) {

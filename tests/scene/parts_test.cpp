@@ -303,7 +303,6 @@ touch = { stiffness = 250, damping = 0.5, friction = 0.1, width = 0.004, yield =
     expect_words(refusal(small + "touch = { stifness = 3 }\n"), {"stifness", "\"stiffness\""});
     expect_words(refusal(small + dent + "stiffness = 100\n"), {"stiffness", "dent", "touch"});
     expect_words(refusal(small + dent + "near = [0, 0, 0]\n"), {"near", "dent"});
-    expect_words(refusal(small + dent + "device = \"spoon\"\n"), {"spoon", "script", "hand"});
     expect_words(refusal(small + "[[tool]]\ndevice = \"hand\"\n" + path), {"hand", "press"});
     expect_words(refusal(small + dent + "shaft = -1\n"), {"shaft"});
     expect_words(refusal(skin + "[[move]]\nbody = \"skin\"\nnodes = { below = 1 }\n" + path),

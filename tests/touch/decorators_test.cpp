@@ -6,7 +6,7 @@
 #include "palpate/touch/devices/scaled.h"
 #include "palpate/touch/devices/script.h"
 #include "palpate/touch/devices/virtual_hand.h"
-#include "palpate/touch/make_device.h"
+#include "palpate/touch/drivers.h"
 #include "tests/scratch.h"
 
 #include <gtest/gtest.h>
@@ -172,7 +172,7 @@ TEST(Recorder, WhatItRecordsPlaysBackToTheBit) {
     EXPECT_EQ(log.device, "virtual hand");
 
     std::size_t line = 0;
-    auto playback = make_device("playback", {.log = folder / "log.csv"});
+    auto playback = driver("playback").make({.log = folder / "log.csv"});
     playback->open();
     for (const Seen& s : seen) {
         DeviceState played;

@@ -5,7 +5,7 @@
 #include "palpate/touch/devices/playback.h"
 #include "palpate/touch/devices/script.h"
 #include "palpate/touch/devices/virtual_hand.h"
-#include "palpate/touch/make_device.h"
+#include "palpate/touch/drivers.h"
 #include "tests/refusal.h"
 #include "tests/scratch.h"
 
@@ -464,24 +464,24 @@ TEST(Playback, GoesStraightBetweenTicksButOverNoJump) {
     EXPECT_THROW(Playback(Log{}).open(), Error);
 }
 
-TEST(MakeDevice, KnowsThemByName) {
+TEST(Drivers, AreKnownByName) {
     const Scratch folder;
     Log log;
     log.ticks.push_back({});
     write_log(folder / "log.csv", log);
     const DeviceSettings settings{.path = {{0, vec3(0)}}, .log = folder / "log.csv"};
-    for (const auto& named : names(DeviceKind{})) {
-        auto device = make_device(named.name, settings);
+    for (const Driver& named : drivers()) {
+        auto device = driver(named.name).make(settings);
         ASSERT_TRUE(device) << named.name;
         device->open();
         DeviceState state;
         EXPECT_TRUE(device->read(0, state)) << named.name;
     }
-    EXPECT_EQ(refusal([] { make_device("mose"); }),
+    EXPECT_EQ(refusal([] { driver("mose"); }),
               "no device \"mose\" in the list of devices; did you mean \"mouse\"? There are hand, "
               "script, mouse, playback");
-    EXPECT_THROW(make_device("playback", {.log = "/nowhere"}), Error);
-    EXPECT_THROW(make_device("script")->open(), Error);
+    EXPECT_THROW(driver("playback").make({.log = "/nowhere"}), Error);
+    EXPECT_THROW(driver("script").make({})->open(), Error);
 }
 
 }  // namespace

@@ -311,7 +311,7 @@ TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     open("box", {"simulation.gravity=[0,0,0]"});
     const Scratch scratch;
     viewer.options.mode = Mode::dent;
-    viewer.options.device = DeviceKind::script;
+    viewer.options.device = "script";
     viewer.options.device_file = (scratch / "nowhere.csv").string();
     viewer.advance(1);
     EXPECT_FALSE(viewer.feeling());
@@ -319,7 +319,7 @@ TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     EXPECT_NE(viewer.message().text.find("nowhere.csv"), std::string::npos);
     write_text(scratch / "path.csv", "0,0.1,0.2,0.02\n1,0.1,0.2,0.02\n");
     viewer.options.mode = Mode::dent;
-    viewer.options.device = DeviceKind::script;
+    viewer.options.device = "script";
     viewer.options.device_file = (scratch / "path.csv").string();
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
@@ -332,7 +332,7 @@ TEST_F(ViewerTest, ADevicePressesAndPullsAsWell) {
     const Scratch scratch;
     // It comes down on the beam's upper side, waits, and goes up.
     write_text(scratch / "path.csv", "0,0.15,0.09,0.025\n0.3,0.15,0.045,0.025\n6000,0.15,0.045,0.025\n");
-    viewer.options.device = DeviceKind::script;
+    viewer.options.device = "script";
     viewer.options.device_file = (scratch / "path.csv").string();
     viewer.options.mode = Mode::press;
     const double before = state().positions[456].y;
@@ -344,7 +344,7 @@ TEST_F(ViewerTest, ADevicePressesAndPullsAsWell) {
     wait_until(viewer, 1, [&] { return !viewer.holds().empty() && !viewer.holds()[0].presses(); });
     ASSERT_EQ(viewer.holds().size(), 1u);
     EXPECT_GT(viewer.holds()[0].pulls(), 0u);
-    viewer.options.device = DeviceKind::mouse;
+    viewer.options.device = "mouse";
     viewer.advance(2);
     EXPECT_TRUE(viewer.holds().empty());
     EXPECT_FALSE(viewer.feeling());
