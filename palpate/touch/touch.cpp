@@ -13,7 +13,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t most_marks = most_dents - 3;  // the others are for what is under the tip
 constexpr int no_stroke = std::numeric_limits<int>::max();
 constexpr double usual_rate = 1000;  // Hz, for which a device's stiffest wall is given
 
@@ -50,29 +49,6 @@ void check(const TouchSettings& settings, const std::string& device) {
     check(settings.safety, device);
 }
 
-Dent dent_under(const Contact& contact, double depth, const Feel& feel) {
-    return {vec3(contact.point), float(contact.behind ? -depth : depth), float(feel.dent_width),
-            vec3(contact.front())};
-}
-
-// How deep a single press makes a surface.
-double deepest_press(const Feel& feel) { return 2.0 / 3 * deepest_dent(feel.dent_width); }
-
-// How much deeper one more dent can make it there. What it adds at the places of others counts the less the
-// farther they are, or the first press would use up all that a stroke may add beside it.
-double room_for_dent(std::span<const Dent> lasting, const Contact& contact, const Feel& feel) {
-    double room = deepest_press(feel) - lasting_depth(lasting, contact);
-    const Dent one[] = {dent_under(contact, 1, feel)};
-    for (const Dent& dent : lasting) {
-        const double side = dent.depth < 0 ? -1 : 1;
-        const double share = side * double(depth_at(one, dent.centre, dent.facing));
-        if (share < 1e-3) continue;
-        const double there = side * double(depth_at(lasting, dent.centre, dent.facing));
-        room = std::min(room, (deepest_dent(feel.dent_width) * (1 - share / 3) - there) / share);
-    }
-    return room;
-}
-
 std::unique_ptr<Device> given(std::unique_ptr<Device> device) {
     if (!device) throw Error("no device", "a hand", "make one before");
     return device;
@@ -96,13 +72,11 @@ Touch::Touch(std::unique_ptr<Device> device, TouchSettings settings, const Warmt
       proxy_(settings.radius),
       safety_(spec_, settings.safety, warmth),
       marks_(settings.feels.size()),
-      lasting_(settings.feels.size()),
+      pushes_(settings.feels.size()),
       ticked_(-1),
       forget_from_(no_stroke) {
     set(std::move(settings));
     take_wishes();
-    for (auto& list : marks_) list.reserve(most_marks);
-    for (auto& list : lasting_) list.reserve(most_marks);
     device_->open();
     device_->stop();
     add_touch(*this);
@@ -147,6 +121,9 @@ void Touch::feel(Patch patch) {
 bool Touch::tick(double now, double* proxy_seconds) noexcept {
     ticking_ = true;
     ticked_.store(now, std::memory_order_release);
+    const double seconds = std::max(now - time_, 0.0);
+    push(now, seconds);
+    time_ = now;
     take_wishes();
     DeviceState read = state_;
     const bool there = device_->read(now, read);
@@ -156,29 +133,44 @@ bool Touch::tick(double now, double* proxy_seconds) noexcept {
         read = state_;
     was_gone_ = !there;
     bound_stiffness();
-    if (patches_.fetch() || patches_.shown().fastest() > 0) carry_marks(now);
-    const double seconds = std::clamp(now - time_, 0.0, 0.01);
-    time_ = now;
-    const dvec3 want = turned_slowly(wanted(now, proxy_seconds), seconds);
+    if (patches_.fetch() || patches_.shown().fastest() > 0) marks_.carry(patches_.shown(), now);
+    const dvec3 want = turned_slowly(wanted(now, proxy_seconds), std::min(seconds, 0.01));
     const Contact* most = proxy_.deepest();
-    Wrench wrench = safety_.allow({vec3(want), {}}, read, velocity_, most ? most->velocity : dvec3(0), now);
+    if (most) touched_ = {most->surface, most->triangle, most->weights};
+    wrench_ = safety_.allow({vec3(want), {}}, read, velocity_, most ? most->velocity : dvec3(0), now);
     // The watchdog may have come between: then what was reckoned belongs to a time long ago.
     if (stopped_.exchange(false, std::memory_order_acq_rel)) {
         safety_.let_go(Held::stalled);
-        wrench = safety_.none();
+        wrench_ = safety_.none();
     }
     // A device that does not say where it is, or does not take a force, may hold the one that it had.
-    if (!there || !device_->write(wrench)) {
+    if (!there || !device_->write(wrench_)) {
         device_->stop();
         safety_.let_go(Held::gone);
-        wrench = safety_.none();
+        wrench_ = safety_.none();
     }
     // Or here: then what it stopped was not yet this.
-    if (stopped_.load(std::memory_order_acquire)) device_->stop();
+    if (stopped_.load(std::memory_order_acquire)) {
+        device_->stop();
+        wrench_ = {};
+    }
     leave_marks();
-    tell(now, wrench);
+    tell(now);
     ticking_ = false;
     return there;
+}
+
+// The surface was given what the hand was, the other way. A force that was left alone for longer than any may
+// be, the watchdog has taken back.
+void Touch::push(double now, double seconds) {
+    const dvec3 force(wrench_.force);
+    if (force != dvec3(0)) {
+        Push one = touched_;
+        one.impulse = -std::min(seconds, lost_.load()) * force;
+        one.time = now;
+        pushes_.add(one);
+    }
+    pushes_.send();
 }
 
 // What another thread has asked for since the last tick.
@@ -193,12 +185,7 @@ void Touch::take_wishes() {
             friction_[s] = settings.feels[s].friction;
         }
     }
-    if (const int from = forget_from_.exchange(no_stroke); from != no_stroke)
-        for (std::size_t s = 0; s < marks_.size(); ++s) {
-            std::erase_if(marks_[s], [&](const Mark& mark) { return mark.stroke >= from; });
-            lasting_[s].clear();
-            for (const Mark& mark : marks_[s]) lasting_[s].push_back(mark.dent);
-        }
+    if (const int from = forget_from_.exchange(no_stroke); from != no_stroke) marks_.forget(from);
     if (begins_anew_.exchange(false)) {
         proxy_.put(state_.pose.place);
         safety_.let_go(Held::placed);
@@ -254,7 +241,7 @@ dvec3 Touch::wanted(double now, double* proxy_seconds) {
     if (proxy_seconds) *proxy_seconds = thread_seconds() - start;
     if (pushed > wishes_.shown().surprise) safety_.let_go(Held::pushed);
     const Contact* most = proxy_.deepest();
-    return most ? force(proxy_, hand, velocity_, feels_, lasting_[std::size_t(most->surface)]) : dvec3(0);
+    return most ? force(proxy_, hand, velocity_, feels_, marks_.on(std::size_t(most->surface))) : dvec3(0);
 }
 
 // A force that turns at once, as over an edge of a coarse mesh, feels like the edge and not like the surface.
@@ -274,66 +261,19 @@ dvec3 Touch::turned_slowly(dvec3 wanted, double seconds) {
     return strength * direction_;
 }
 
-// Where their surfaces are now.
-void Touch::carry_marks(double now) {
-    for (std::size_t s = 0; s < marks_.size(); ++s)
-        for (std::size_t m = 0; m < marks_[s].size(); ++m) {
-            Mark& mark = marks_[s][m];
-            const auto face = patches_.shown().find(int(s), mark.triangle, now);
-            if (!face) continue;
-            const auto& [a, b, c] = face->corners;
-            mark.dent.centre = vec3(mark.weights.x * a + mark.weights.y * b + mark.weights.z * c);
-            const dvec3 up = glm::cross(b - a, c - a);
-            const double length = glm::length(up), side = glm::dot(up, dvec3(mark.dent.facing)) < 0 ? -1 : 1;
-            if (length > 0) mark.dent.facing = vec3(side / length * up);
-            lasting_[s][m] = mark.dent;
-        }
-}
-
 // What is deeper than a surface springs back from stays; but what no hand felt leaves nothing.
 void Touch::leave_marks() {
     if (safety_.held() != Held::no && safety_.held() != Held::ramping) return;
-    for (const Contact& contact : proxy_.contacts()) {
-        const auto s = std::size_t(contact.surface);
-        const Feel& feel = feels_[s];
-        const double wanted = contact.depth - feel.yield - lasting_depth(lasting_[s], contact);
-        const double least = 1e-4 * feel.dent_width;  // less waits until it is more
-        if (!(wanted > least)) continue;
-        const double more = std::min(wanted, room_for_dent(lasting_[s], contact, feel));
-        if (!(more > least)) continue;
-        const Dent dent = dent_under(contact, more, feel);
-        // Near enough to one of the same stroke that counts here in full, that one grows; else there is a
-        // new one, as long as there is room.
-        std::size_t nearest = marks_[s].size();
-        float closest = 0.25f * dent.width;
-        for (std::size_t m = 0; m < marks_[s].size(); ++m) {
-            const Mark& mark = marks_[s][m];
-            const bool alike = mark.stroke == stroke_ && glm::dot(mark.dent.facing, dent.facing) >= 0.5f &&
-                               (mark.dent.depth > 0) == (dent.depth > 0);
-            const float off = glm::distance(mark.dent.centre, dent.centre);
-            if (!alike || off >= closest) continue;
-            closest = off;
-            nearest = m;
-        }
-        if (nearest < marks_[s].size()) {
-            marks_[s][nearest].dent.depth += dent.depth;
-            lasting_[s][nearest] = marks_[s][nearest].dent;
-            continue;
-        }
-        std::size_t all = 0;
-        for (const auto& list : marks_) all += list.size();
-        if (all == most_marks) continue;
-        marks_[s].push_back({dent, contact.triangle, contact.weights, stroke_});
-        lasting_[s].push_back(dent);
-    }
+    for (const Contact& contact : proxy_.contacts())
+        marks_.leave(contact, feels_[std::size_t(contact.surface)], stroke_);
 }
 
-void Touch::tell(double now, const Wrench& wrench) {
+void Touch::tell(double now) {
     told_.time = now;
     told_.pose = state_.pose;
     told_.velocity = vec3(velocity_);
     told_.proxy = vec3(proxy_.position());
-    told_.force = wrench.force;
+    told_.force = wrench_.force;
     told_.held = safety_.held();
     told_.last_reason = safety_.last_reason();
     told_.buttons = state_.buttons;
@@ -346,18 +286,15 @@ void Touch::tell(double now, const Wrench& wrench) {
         told_.dents[std::size_t(told_.count)] = dent;
         told_.surfaces[std::size_t(told_.count++)] = int(surface);
     };
-    for (std::size_t s = 0; s < lasting_.size(); ++s)
-        for (const Dent& dent : lasting_[s]) add(dent, s);
+    for (std::size_t s = 0; s < marks_.surfaces(); ++s)
+        for (const Dent& dent : marks_.on(s)) add(dent, s);
     told_.lasting = told_.count;
-    told_.last_stroke = 0;
-    for (const auto& list : marks_)
-        for (const Mark& mark : list) told_.last_stroke = std::max(told_.last_stroke, mark.stroke);
+    told_.last_stroke = marks_.last_stroke();
     for (const Contact& contact : proxy_.contacts()) {
         const auto s = std::size_t(contact.surface);
-        const double has = lasting_depth(lasting_[s], contact);
-        const double drawn = std::min(contact.depth, deepest_press(feels_[s])) - has;
-        if (drawn > 0) add(dent_under(contact, drawn, feels_[s]), s);
-        told_.depth = std::max(told_.depth, float(contact.depth - has));
+        const Dent dent = dent_under(contact, feels_[s], marks_.on(s));
+        if (dent.depth != 0) add(dent, s);
+        told_.depth = std::max(told_.depth, float(contact.depth - lasting_depth(marks_.on(s), contact)));
     }
     felt_.store(told_);
 }

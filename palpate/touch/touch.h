@@ -5,7 +5,9 @@
 #include "palpate/body/patch.h"
 #include "palpate/touch/device.h"
 #include "palpate/touch/force.h"
+#include "palpate/touch/marks.h"
 #include "palpate/touch/proxy.h"
+#include "palpate/touch/push_queue.h"
 #include "palpate/touch/safety.h"
 
 #include <array>
@@ -84,6 +86,14 @@ class Touch {
     /// others now, or as they were at the start.
     void begin_anew() noexcept;
 
+    /// The next of the pushes by which the hand gives to surfaces what they gave to it: a simulation takes
+    /// all that there are at each of its steps. Their sum is the time integral of the force that was written
+    /// to the device, the other way, up to the last tick; a slow reader loses nothing of it. Where a force
+    /// fades after the hand has left, it is the surface that it left which is pushed. What a watchdog took back
+    /// counts for SafetySettings::lost at most. Triangles are those of the patch that was felt at Push::time,
+    /// so take all before another one has others. False if there is none.
+    bool next(Push& push) noexcept { return pushes_.next(push); }
+
     /// Of the loop that ticks it, Hz: below 1000, walls are as much less stiff, or they would not be still.
     void expect_rate(double rate) noexcept { rate_ = rate; }
 
@@ -111,18 +121,10 @@ class Touch {
     void take_in(const DeviceState& read);
     void bound_stiffness();
     dvec3 wanted(double now, double* proxy_seconds);
-    void carry_marks(double now);
     dvec3 turned_slowly(dvec3 wanted, double seconds);
     void leave_marks();
-    void tell(double now, const Wrench& wrench);
-
-    // A dent that stays, where its surface carries it.
-    struct Mark {
-        Dent dent;
-        int triangle;
-        dvec3 weights;
-        int stroke;
-    };
+    void push(double now, double seconds);
+    void tell(double now);
 
     std::unique_ptr<Device> device_;
     const DeviceSpec spec_;
@@ -140,8 +142,10 @@ class Touch {
     dvec3 velocity_ = dvec3(0);
     dvec3 direction_ = dvec3(0);
     double time_ = 0;
-    std::vector<std::vector<Mark>> marks_;    // by surface; their room is made beforehand
-    std::vector<std::vector<Dent>> lasting_;  // the marks' dents
+    Marks marks_;
+    Wrench wrench_ = {};  // that the device was told
+    Push touched_ = {};   // where it touched a surface the last time
+    PushQueue pushes_;
     Felt told_ = {};
     SequenceLock<Felt> felt_;
     std::atomic<double> ticked_;  // s; below 0 before the first

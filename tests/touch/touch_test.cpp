@@ -13,8 +13,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
+#include <thread>
 
 namespace palpate {
 namespace {
@@ -194,6 +196,86 @@ TEST(Touch, ATickAllocatesNothing) {
     }
     EXPECT_EQ(allocations(), before);
     EXPECT_GT(s.touch->felt().lasting, 0);  // or it would show little
+}
+
+// ---- what the hand gives to the surface ----
+
+// A simulation gets all the momentum that the hand got, however seldom it asks, also while a force fades
+// after the hand has gone: to rounding the integral of what was written.
+TEST(Touch, WhatTheHandGetsTheSurfaceGetsBack) {
+    const Mesh mesh = slab();
+    for (int every : {1, 17, 100'000}) {
+        Scene1 s(std::make_unique<VirtualHand>(path({{0, {0.01f, 0.02f, 0}},
+                                                     {1.2, {0.01f, 0.01f, 0}},
+                                                     {1.8, {0.01f, radius - 0.01f, 0.02f}},
+                                                     {3, {-0.03f, radius - 0.006f, 0.02f}},
+                                                     {3.05, {-0.03f, 0.05f, 0.02f}}})),
+                 soft());
+        s.touch->feel(all_of(mesh));
+        dvec3 given(0), got(0);
+        double size = 0, last = 0;
+        long count = 0;
+        auto take_all = [&] {
+            for (Push push; s.touch->next(push); ++count) {
+                got += push.impulse;
+                EXPECT_EQ(push.surface, 0);
+                ASSERT_LT(std::size_t(push.triangle), mesh.triangles.size());
+                EXPECT_NEAR(push.weights.x + push.weights.y + push.weights.z, 1, 1e-9);
+                EXPECT_GT(push.time, last);
+                last = push.time;
+                const uvec3 t = mesh.triangles[std::size_t(push.triangle)];
+                EXPECT_NEAR(glm::dot(push.weights, dvec3(mesh.positions[t.x].y, mesh.positions[t.y].y,
+                                                         mesh.positions[t.z].y)),
+                            0, 1e-6);
+            }
+        };
+        const std::size_t before = allocations();
+        for (int i = 0; i < 4000; ++i) {
+            const dvec3 holds(s.device->written);
+            const double seconds = (i % 3 + 0.5) * 1e-3;
+            s.time += seconds;
+            s.touch->tick(s.time);
+            given += seconds * holds;
+            size += seconds * glm::length(holds);
+            if (i % every == every - 1) take_all();
+        }
+        EXPECT_EQ(allocations(), before);
+        EXPECT_EQ(s.device->written, vec3(0));
+        take_all();
+        for (int i = 0; i < 10; ++i) s.tick(), take_all();  // what found no room
+        EXPECT_GT(size, 1);
+        EXPECT_LE(glm::distance(got, -given), 1e-12 * size) << every;
+        EXPECT_GE(count, every < 100 ? 1000 : 256);
+    }
+}
+
+// For the thread sanitizer too.
+TEST(Touch, AnotherThreadTakesThePushes) {
+    PushQueue pushes(2);
+    constexpr int all = 100'000;
+    std::atomic<bool> over = false;
+    std::thread loop([&] {
+        for (int i = 1; i <= all; ++i) {
+            pushes.add({.surface = i % 2, .impulse = dvec3(1, i, 0), .time = double(i)});
+            pushes.send();
+        }
+        for (; !over; std::this_thread::yield()) pushes.send();
+    });
+    dvec3 sum(0);
+    double last[2] = {};
+    Push push;
+    while (sum.x < all) {
+        if (!pushes.next(push)) {
+            std::this_thread::yield();
+            continue;
+        }
+        sum += push.impulse;
+        EXPECT_GT(push.time, last[push.surface]);
+        last[push.surface] = push.time;
+    }
+    over = true;
+    loop.join();
+    EXPECT_EQ(sum, dvec3(all, all * (all + 1.0) / 2, 0));
 }
 
 // ---- faults ----
