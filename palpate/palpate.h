@@ -94,3 +94,4 @@
 #include "palpate/touch/safety.h"
 #include "palpate/touch/timing.h"
 #include "palpate/touch/touch.h"
+#include "palpate/touch/watchdog.h"

@@ -12,44 +12,30 @@ namespace palpate {
 namespace {
 
 constexpr double slowest = 250, fastest = 4000;  // Hz
-constexpr double watch_every = 0.001;            // s
 constexpr double longest_spin = 0.001;           // s: more would leave nothing of a processor to others
 
 }  // namespace
 
 TouchLoop::TouchLoop(std::vector<Touch*> touches, LoopSettings settings)
-    : touches_(std::move(touches)), settings_(settings) {
+    : touches_(std::move(touches)), settings_(settings), watchdog_(touches_) {
     if (!(settings.rate >= slowest && settings.rate <= fastest))
         throw Error(fmt::format("a rate of {} Hz", settings.rate), "the haptic loop",
                     fmt::format("choose one from {} to {}", slowest, fastest));
     if (!(settings.spin >= 0 && settings.spin <= longest_spin))
         throw Error(fmt::format("a spin of {} s", settings.spin), "the haptic loop",
                     fmt::format("choose one from 0 to {}", longest_spin));
-    for (Touch* touch : touches_) {
-        if (!touch) throw Error("a touch that is not there", "the haptic loop", "make it before");
-        paced_ |= touch->device().paces;
-    }
+    for (Touch* touch : touches_) paced_ |= touch->device().paces;
     if (!paced_)
         for (Touch* touch : touches_) touch->expect_rate(settings.rate);
-    watchdog_ = std::thread([this] { watch(); });  // before there is anything to watch
-    try {
-        loop_ = std::thread([this] { run(); });
-    } catch (...) {
-        end();
-        throw;
-    }
+    loop_ = std::thread([this] { run(); });
     started_.wait(false);  // so that granted() has an answer
 }
 
-TouchLoop::~TouchLoop() { end(); }
-
-// The watchdog last: the loop may hang in a device on its way out.
-void TouchLoop::end() {
+// The watchdog goes on until the loop has ended, which may hang in a device on its way out.
+TouchLoop::~TouchLoop() {
     ends_.store(true, std::memory_order_release);
     for (Touch* touch : touches_) touch->let_go();
-    if (loop_.joinable()) loop_.join();
-    watch_ends_.store(true, std::memory_order_release);
-    watchdog_.join();
+    loop_.join();
     for (Touch* touch : touches_) touch->let_go();
 }
 
@@ -92,17 +78,6 @@ bool TouchLoop::tick(double time) {
 void TouchLoop::wait_for(double time) const {
     if (time - now() > settings_.spin) sleep_until(time - settings_.spin);
     while (now() < time) {}
-}
-
-// It sleeps nearly always, and runs before the loop, which may be stuck in anything.
-void TouchLoop::watch() {
-    keep_time(true);
-    while (!watch_ends_.load(std::memory_order_acquire)) {
-        sleep_until(now() + watch_every);
-        const double time = now();
-        for (Touch* touch : touches_)
-            if (touch->watch(time)) stalls_.fetch_add(1, std::memory_order_relaxed);
-    }
 }
 
 }  // namespace palpate

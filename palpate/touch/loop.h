@@ -1,7 +1,7 @@
 #pragma once
 #include "palpate/base/realtime.h"
 #include "palpate/touch/timing.h"
-#include "palpate/touch/touch.h"
+#include "palpate/touch/watchdog.h"
 
 #include <atomic>
 #include <string>
@@ -25,7 +25,7 @@ struct LoopTiming {
 };
 
 /// Ticks touches on a thread of its own, a thousand times a second by absolute deadlines, with whatever
-/// priority the system grants; and on a second one a watchdog, which lets go of them if the first gets stuck.
+/// priority the system grants; a Watchdog lets go of them if it gets stuck.
 /// Both end with this object, and the devices are stopped. The touches must outlive it.
 class TouchLoop {
  public:
@@ -43,13 +43,11 @@ class TouchLoop {
     double rate() const { return settings_.rate; }
 
     /// How often the watchdog had to act.
-    std::uint64_t times_stalled() const { return stalls_.load(std::memory_order_relaxed); }
+    std::uint64_t times_stalled() const { return watchdog_.times_stalled(); }
 
  private:
     void run();
-    void watch();
     bool tick(double now);
-    void end();
     void wait_for(double time) const;
 
     const std::vector<Touch*> touches_;
@@ -57,9 +55,9 @@ class TouchLoop {
     bool paced_ = false;
     LoopTiming timing_;
     Granted granted_;
-    std::atomic<bool> started_ = false, ends_ = false, watch_ends_ = false;
-    std::atomic<std::uint64_t> stalls_ = 0;
-    std::thread watchdog_, loop_;
+    std::atomic<bool> started_ = false, ends_ = false;
+    Watchdog watchdog_;  // before there is anything to watch, and after
+    std::thread loop_;
 };
 
 }  // namespace palpate

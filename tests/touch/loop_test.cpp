@@ -94,6 +94,27 @@ TEST(TouchLoop, ItsWatchdogStopsADeviceThatHangs) {
     while (one.device->reads < reads + 20) pass(0.001);  // it goes on
 }
 
+// A vendor's servo thread ticks, not ours, and hangs.
+TEST(Watchdog, LetsGoOfWhatAForeignThreadLeavesAlone) {
+    Counted one;
+    Watchdog watchdog({one.touch.get()});
+    std::atomic<bool> ends = false;
+    std::thread servo([&] {
+        for (; !ends; pass(0.001)) one.touch->tick(now());
+    });
+    while (one.device->reads < 20) pass(0.001);
+    const long stops = one.device->stops;
+    one.device->hangs = true;
+    while (watchdog.times_stalled() == 0 || one.device->stops < stops + 3) pass(0.001);
+    one.device->hangs = false;
+    const long reads = one.device->reads;
+    while (one.device->reads < reads + 20) pass(0.001);  // it goes on, from nothing
+    EXPECT_EQ(one.touch->felt().last_reason, Held::stalled);
+    ends = true;
+    servo.join();
+    EXPECT_THROW(Watchdog({nullptr}), Error);
+}
+
 TEST(TouchLoop, RefusesARateThatIsNone) {
     Counted one;
     for (double rate : {0.0, 100.0, 5000.0, -1.0, double(NAN)})
