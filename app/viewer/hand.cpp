@@ -1,6 +1,5 @@
 #include "app/viewer/hand.h"
 
-#include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/run/run.h"
 
@@ -11,7 +10,6 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t most_threads_of_a_hold = 4;  // of the 8 drags that a body takes
-constexpr float beyond = 0.04f;  // m around a hand that it knows: it goes no farther before the next picture
 
 float width_of(const Body& body) {
     Bounds box;
@@ -20,8 +18,6 @@ float width_of(const Body& body) {
 }
 
 }  // namespace
-
-// ---- holds ----
 
 Hold Hold::pulling(const Experiment& experiment, const Hit& hit) {
     const Body& body = experiment.models().models[hit.surface].body;
@@ -99,53 +95,6 @@ vec3 Hold::held(const Play& play) const {
 bool Hold::fits(const Experiment& experiment) const {
     const auto& models = experiment.models().models;
     return body_ < models.size() && models[body_].body.count() == nodes_;
-}
-
-// ---- hands that feel ----
-
-FeelingHand::FeelingHand(std::unique_ptr<Device> device, std::vector<Feel> feels, float radius, vec3 start,
-                         const std::vector<Skin>& skins, const Warmth& warmth)
-    : touch_(std::move(device), {.radius = radius, .feels = std::move(feels)}, warmth) {
-    feel(skins, start);
-    loop_.emplace(std::vector<Touch*>{&touch_});
-}
-
-void FeelingHand::set(std::vector<Feel> feels, float radius) {
-    touch_.set({.radius = radius, .feels = std::move(feels)});
-}
-
-void FeelingHand::begin_anew() {
-    expect_jump();
-    begins_anew_ = true;
-}
-
-// Nothing is left of the old surfaces only once the touch knows the new ones.
-void FeelingHand::feel(const std::vector<Skin>& skins) {
-    felt_ = touch_.felt();
-    feel(skins, felt_.proxy);
-    if (begins_anew_) touch_.begin_anew();
-    begins_anew_ = false;
-}
-
-std::string FeelingHand::granted() const { return loop_->granted().schedule; }
-
-void FeelingHand::feel(const std::vector<Skin>& skins, vec3 around) {
-    const double time = now();
-    const auto seconds = float(std::max(time - felt_at_, 1e-4));
-    std::vector<std::vector<vec3>> velocities(skins.size());
-    for (std::size_t s = 0; s < skins.size() && s < before_.size(); ++s) {
-        const std::vector<vec3>& here = skins[s].positions;
-        if (before_[s].size() != here.size() || seconds > 0.5f) continue;
-        velocities[s].resize(here.size());
-        for (std::size_t i = 0; i < here.size(); ++i) velocities[s][i] = (here[i] - before_[s][i]) / seconds;
-    }
-    std::vector<Touchable> surfaces;
-    for (std::size_t s = 0; s < skins.size(); ++s)
-        surfaces.push_back({skins[s].positions, *skins[s].triangles, velocities[s], skins[s].is_sheet});
-    touch_.feel(Patch(surfaces, around, beyond, time));
-    before_.resize(skins.size());
-    for (std::size_t s = 0; s < skins.size(); ++s) before_[s] = skins[s].positions;
-    felt_at_ = time;
 }
 
 }  // namespace palpate

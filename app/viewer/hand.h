@@ -2,9 +2,6 @@
 #include "app/viewer/orbit.h"
 #include "palpate/base/names.h"
 #include "palpate/run/experiment.h"
-#include "palpate/touch/devices/mouse.h"
-#include "palpate/touch/drivers.h"
-#include "palpate/touch/loop.h"
 
 #include <filesystem>
 #include <memory>
@@ -75,48 +72,6 @@ class Hold {
     float stiffness_ = 0;  // N/m, of a tip
     float fastest_ = 1;    // m/s
     vec3 place_ = vec3(0), target_ = vec3(0);
-};
-
-/// A hand that feels: a device, its touch, and the loop that ticks it a thousand times a second in real time.
-class FeelingHand {
- public:
-    /// It begins near `start`, among those skins. Throws Error if the device cannot be opened. `warmth`: of
-    /// motors that were used before.
-    FeelingHand(std::unique_ptr<Device> device, std::vector<Feel> feels, float radius, vec3 start,
-                const std::vector<Skin>& skins, const Warmth& warmth);
-
-    /// As it was when feel() was called last, so that all of a picture shows the same tick.
-    const Felt& felt() const { return felt_; }
-    /// How warm its motors are now.
-    Warmth warmth() const { return touch_.felt().warmth; }
-    const LoopTiming& timing() const { return loop_->timing(); }
-    double rate() const { return loop_->rate(); }
-    std::string granted() const;
-
-    /// What it can meet from now on: the skins around it, as they move. Once a picture.
-    void feel(const std::vector<Skin>& skins);
-
-    /// Another tip, and surfaces that feel another way; the device stays open.
-    void set(std::vector<Feel> feels, float radius);
-
-    /// What stays of its dents belongs to a new stroke, whose number that is; and what is gone with forget().
-    int begin_stroke() { return touch_.begin_stroke(); }
-    void forget(int from_stroke) { touch_.forget(from_stroke); }
-
-    /// The skins of the next feel() have not moved to where they are, but are there at once: ...
-    void expect_jump() { before_.clear(); }
-    /// ... and are others, or as at the start: no dent stays, and the hand begins without force.
-    void begin_anew();
-
- private:
-    void feel(const std::vector<Skin>& skins, vec3 around);
-
-    Touch touch_;
-    Felt felt_ = {};
-    bool begins_anew_ = false;
-    std::vector<std::vector<vec3>> before_;  // where the skins were
-    double felt_at_ = 0;                     // s, when that was
-    std::optional<TouchLoop> loop_;          // last: it ticks the touch
 };
 
 }  // namespace palpate

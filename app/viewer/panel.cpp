@@ -294,13 +294,13 @@ void show_readings(const Viewer& viewer) {
         ImGui::TextColored(quiet, "energy: on the GPU");
     ImGui::Text("largest speed %.3g m/s", readings.largest_speed);
     ImGui::Text("state %.1f MB", double(readings.memory) / 1e6);
-    if (const FeelingHand* hand = viewer.feeling()) {
-        const LoopTiming& timing = hand->timing();
+    if (const FeltHand* hand = viewer.feeling()) {
+        const LoopTiming& timing = hand->loop().timing();
         const double mean = timing.periods.mean();
-        ImGui::Text("haptics %.1f Hz of %.0f", mean > 0 ? 1 / mean : 0, hand->rate());
+        ImGui::Text("haptics %.1f Hz of %.0f", mean > 0 ? 1 / mean : 0, hand->loop().rate());
         ImGui::Text("period 99.9 %% %.2f ms, longest %.2f ms", 1000 * timing.periods.quantile(0.999),
                     1000 * timing.periods.longest());
-        ImGui::TextColored(quiet, "scheduled: %s", hand->granted().c_str());
+        ImGui::TextColored(quiet, "scheduled: %s", hand->loop().granted().schedule.c_str());
         const Felt& felt = hand->felt();
         ImGui::Text("force %.2f N", double(glm::length(felt.force)));
         if (felt.held != Held::no) ImGui::TextColored(quiet, "%s", std::string(name_of(felt.held)).c_str());

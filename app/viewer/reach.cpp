@@ -10,7 +10,8 @@
 namespace palpate {
 namespace {
 
-constexpr float away = 0.02f;       // m: so far before a surface a hand waits that does not dent it
+constexpr float beyond = 0.04f;  // m around a hand that it knows: it goes no farther before the next picture
+constexpr float away = 0.02f;    // m: so far before a surface a hand waits that does not dent it
 constexpr float dent_depth = 0.6f;  // in radii of its tip
 constexpr float jump = 0.04f;       // m: no person moves a hand so far from one picture to the next
 
@@ -218,7 +219,7 @@ void Viewer::make_feeling_hand() {
     const bool stays = wanted && feeling_ && feeling_of_.device == of.device && feeling_of_.file == of.file &&
                        feeling_of_.feels.size() == of.feels.size();
     if (stays) {
-        feeling_->set(of.feels, of.tip);
+        feeling_->touch().set({.radius = of.tip, .feels = of.feels});
         if (feeling_of_.shapes != of.shapes) feeling_->begin_anew();
         feeling_of_ = std::move(of);
         return;
@@ -238,8 +239,11 @@ void Viewer::make_feeling_hand() {
             pointed_.reset();
             start = follow_pointer();  // so that it begins there and does not come from elsewhere
         }
-        feeling_ = std::make_unique<FeelingHand>(std::move(device), of.feels, of.tip, start,
-                                                 experiment_->play().skins(), warmth_);
+        auto hand = std::make_unique<FeltHand>(
+            std::move(device), TouchSettings{.radius = of.tip, .feels = of.feels}, start, warmth_);
+        hand->feel(experiment_->play().skins(), now(), beyond);
+        hand->go_live();
+        feeling_ = std::move(hand);
     });
     if (!feeling_) {  // and it is said why
         mouse_ = nullptr;
@@ -252,7 +256,7 @@ void Viewer::make_feeling_hand() {
 
 // Its motors cool down while there is none.
 void Viewer::drop_feeling_hand() {
-    if (feeling_) warmth_ = feeling_->warmth();
+    if (feeling_) warmth_ = feeling_->touch().felt().warmth;
     feeling_.reset();
     mouse_ = nullptr;
     strokes_.clear();
@@ -304,7 +308,7 @@ void Viewer::start_denting() {
     denting_ = true;   // and goes in
     push_ = dent_depth * options.tip;
     drag_ = Drag::hold;
-    strokes_.push_back({feeling_->begin_stroke(), experiment_->changes_made()});
+    strokes_.push_back({feeling_->touch().begin_stroke(), experiment_->changes_made()});
     follow_pointer();
 }
 
@@ -312,7 +316,7 @@ void Viewer::feel() {
     make_feeling_hand();
     if (!feeling_) return;
     if (looked_ != view_size()) look_with_mouse();
-    feeling_->feel(experiment_->play().skins());
+    feeling_->feel(experiment_->play().skins(), now(), beyond);
     if (mouse_) follow_pointer();
 }
 

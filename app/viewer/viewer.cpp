@@ -201,7 +201,7 @@ void Viewer::change(const std::vector<Change>& changes, bool again) {
 
 void Viewer::undo() {
     if (const Stroke* stroke = last_dent()) {
-        feeling_->forget(stroke->number);
+        feeling_->touch().forget(stroke->number);
         strokes_.resize(std::size_t(stroke - strokes_.data()));
         moved_ = now();
         return say("the dent is gone");

@@ -4,7 +4,9 @@
 #include "app/viewer/orbit.h"
 #include "app/viewer/pane.h"
 #include "palpate/run/experiment.h"
+#include "palpate/run/felt_hand.h"
 #include "palpate/run/film.h"
+#include "palpate/touch/drivers.h"
 
 #include <array>
 #include <functional>
@@ -152,7 +154,7 @@ class Viewer {
     std::vector<Hold> holds() const;
     bool is_holding() const { return active_.has_value() || denting_; }
     bool touched() const { return touched_; }  // whether anybody has reached in yet
-    const FeelingHand* feeling() const { return feeling_.get(); }
+    const FeltHand* feeling() const { return feeling_.get(); }
     ivec2 view_size() const;  // of one of the pictures side by side
     struct Readings {
         Recent simulate, map, draw;    // ms a picture
@@ -175,7 +177,7 @@ class Viewer {
     };
     // A dent that was pressed in, from the pointer's press to its release.
     struct Stroke {
-        int number;           // of the feeling hand
+        int number;           // of the hand that feels
         std::size_t changes;  // how many of the scene came before it
     };
     struct Drawing {
@@ -234,7 +236,7 @@ class Viewer {
     std::optional<std::size_t> active_;  // of the holds, the pointer's own
     std::optional<Hold> device_hold_;    // of a device that is no mouse
     float depth_ = 0;                    // m from the eye, of what the pointer holds
-    std::unique_ptr<FeelingHand> feeling_;
+    std::unique_ptr<FeltHand> feeling_;
     Mouse* mouse_ = nullptr;   // feeling_'s, if that is its device
     HandSettings feeling_of_;  // what feeling_ was made of
     Warmth warmth_;            // of the motors of the one before

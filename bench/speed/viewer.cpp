@@ -111,9 +111,9 @@ Line measure(Viewer& viewer, Gui& gui, const Screen& screen, Doing doing, double
     line.draw *= 1000.0 / pictures;
     line.controls *= 1000.0 / pictures;
     line.pace = (viewer.experiment()->time() - began) / passed;
-    if (const FeelingHand* hand = viewer.feeling()) {
-        line.haptics = 1 / hand->timing().periods.mean();
-        line.longest = 1000 * hand->timing().periods.longest();
+    if (const FeltHand* hand = viewer.feeling()) {
+        line.haptics = 1 / hand->loop().timing().periods.mean();
+        line.longest = 1000 * hand->loop().timing().periods.longest();
     }
     viewer.release(Button::left);
     viewer.keep();

@@ -116,7 +116,6 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
         skins_[models + s] = {surface.positions, surface.normals, &surface.triangles,
                               is_sheet(scene.surfaces[s], surface)};
     }
-    velocities_.resize(skins_.size());
     if (!on_gpu(made.simulation.backend)) map();
 }
 
@@ -138,8 +137,8 @@ std::vector<State> Play::save() const { return world_.save(); }
 void Play::restore(const std::vector<State>& states) {
     world_.restore(states);
     mapped_ = false;
-    before_.clear();  // how fast skins moved is not known any more
-    for (auto& velocities : velocities_) velocities.clear();
+    for (auto& handle : handles_)
+        if (auto* one = std::get_if<Probe>(&handle)) one->expect_jump();
 }
 
 void Play::take_tools(const Play& from) {
@@ -162,7 +161,9 @@ void Play::take_probes(Play& from) {
     for (std::size_t t = 0; t < handles_.size(); ++t) {
         if (!std::holds_alternative<Probe>(from.handles_[t])) continue;
         handles_[t] = std::move(from.handles_[t]);
-        std::get<Probe>(handles_[t]).set(feels_of(scene_));
+        auto& probe = std::get<Probe>(handles_[t]);
+        probe.set(feels_of(scene_));
+        probe.expect_jump();
     }
 }
 
@@ -192,21 +193,9 @@ void Play::probe(double time, double seconds) {
     if (!probes_) return;
     skins();  // which have their own time
     Timed timed(report_.seconds.simulate);
-    const double since = time - before_time_;
-    for (std::size_t m = 0; m < made_.models.size(); ++m) {
-        const std::vector<vec3>& now = skins_[m].positions;
-        if (!before_.empty() && since > 0) {
-            velocities_[m].resize(now.size());
-            for (std::size_t i = 0; i < now.size(); ++i)
-                velocities_[m][i] = (now[i] - before_[m][i]) / float(since);
-        }
-    }
-    before_.resize(made_.models.size());
-    for (std::size_t m = 0; m < made_.models.size(); ++m) before_[m] = skins_[m].positions;
-    before_time_ = time;
     for (auto& handle : handles_)
         if (auto* one = std::get_if<Probe>(&handle); one && one->is_there(time))
-            one->advance(time, seconds, skins_, velocities_, !made_.models.empty());
+            one->advance(time, seconds, skins_, !made_.models.empty());
 }
 
 bool Play::advance(double time, double seconds, const Hands& hands) {

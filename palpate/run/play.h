@@ -106,11 +106,8 @@ class Play {
     std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
     Pushes pushes_;
-    double time_ = 0;                            // s
-    bool probes_ = false;                        // whether any tool is one
-    std::vector<std::vector<vec3>> before_;      // where the skins were a frame ago, for those
-    double before_time_ = 0;                     // s, and when that was
-    std::vector<std::vector<vec3>> velocities_;  // m/s, since then
+    double time_ = 0;      // s
+    bool probes_ = false;  // whether any tool is one
 };
 
 /// How a collider moves that is given about its pivot: evenly from one pose to the next.

@@ -40,57 +40,48 @@ Probe::Probe(const ToolRecipe& recipe, const Scene& scene)
 
 void Probe::set(std::vector<Feel> feels) {
     feels_ = std::move(feels);
-    if (touch_) touch_->set({.radius = recipe_.radius, .feels = feels_});
+    if (hand_) hand_->touch().set({.radius = recipe_.radius, .feels = feels_});
 }
 
 void Probe::begin(double time, const std::vector<Skin>& skins) {
-    if (recipe_.from) origin_ = brought_to_touch(recipe_, file_, skins);
+    const vec3 origin = recipe_.from ? brought_to_touch(recipe_, file_, skins) : vec3(0);
     Path path = recipe_.path;
     for (Waypoint& point : path) {
         point.time -= time + 1 / rate;  // the device counts from its first read
-        point.position += origin_;
+        point.position += origin;
     }
+    const vec3 from = origin + position(recipe_.path, time);
     start_ = time;
-    touch_ = std::make_unique<Touch>(driver(recipe_.device).make({.path = std::move(path)}),
-                                     TouchSettings{.radius = recipe_.radius, .feels = feels_});
+    hand_ = std::make_unique<FeltHand>(driver(recipe_.device).make({.path = std::move(path)}),
+                                       TouchSettings{.radius = recipe_.radius, .feels = feels_}, from);
 }
 
-void Probe::advance(double time, double seconds, const std::vector<Skin>& skins,
-                    const std::vector<std::vector<vec3>>& velocities, bool moving) {
-    if (!touch_) begin(time, skins);
-    if (moving || !knows_surfaces_) touch_->feel(patch(time, skins, velocities));
-    knows_surfaces_ = true;
+void Probe::expect_jump() {
+    if (hand_) hand_->expect_jump();
+}
+
+void Probe::advance(double time, double seconds, const std::vector<Skin>& skins, bool moving) {
+    const bool first = !hand_;
+    if (first) begin(time, skins);
+    // All of what stands still, once and for all.
+    if (moving)
+        hand_->feel(skins, time, beyond);
+    else if (first)
+        hand_->feel(skins, time);
     double sum = 0;
     long count = 0;
     for (; start_ + double(ticks_ + 1) / rate <= time + seconds + 1e-9; ++count) {
-        touch_->tick(start_ + double(++ticks_) / rate);
-        felt_ = touch_->felt();
-        sum += glm::length(felt_.force);
+        hand_->tick(start_ + double(++ticks_) / rate);
+        sum += glm::length(hand_->felt().force);
     }
     if (count > 0) force_ = sum / double(count);
-    depth_ = felt_.depth;
-}
-
-// All of what stands still, once and for all; of what moves the neighbourhood.
-Patch Probe::patch(double time, const std::vector<Skin>& skins,
-                   const std::vector<std::vector<vec3>>& velocities) const {
-    std::vector<Touchable> surfaces;
-    bool anything_moves = false;
-    for (std::size_t s = 0; s < skins.size(); ++s) {
-        surfaces.push_back({skins[s].positions, *skins[s].triangles, velocities[s], skins[s].is_sheet});
-        anything_moves |= !velocities[s].empty();
-    }
-    if (!anything_moves) return Patch(surfaces);
-    const vec3 hand = ticks_ > 0 ? felt_.proxy : origin_ + position(recipe_.path, time);
-    return Patch(surfaces, hand, beyond, time);
 }
 
 std::vector<Dent> Probe::dents(int surface, double time) const {
-    std::vector<Dent> list;
-    const int count = is_there(time) ? felt_.count : felt_.lasting;
-    for (int i = 0; i < count; ++i)
-        if (felt_.surfaces[std::size_t(i)] == surface) list.push_back(felt_.dents[std::size_t(i)]);
-    return list;
+    if (!hand_) return {};
+    Felt felt = hand_->felt();
+    if (!is_there(time)) felt.count = felt.lasting;
+    return felt.dents_of(surface);
 }
 
 }  // namespace palpate

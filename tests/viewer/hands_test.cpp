@@ -211,7 +211,7 @@ TEST_F(ViewerTest, TheHandThatDentsFeelsAndIsSeen) {
     viewer.press(Button::left);
     wait_until(viewer, 1, [&] { return viewer.feeling()->felt().count > 0; });
     EXPECT_GT(difference(viewer.image(), before), 0.03);
-    EXPECT_GT(viewer.feeling()->timing().periods.count(), 0u);
+    EXPECT_GT(viewer.feeling()->loop().timing().periods.count(), 0u);
     viewer.release(Button::left);
     wait_until(viewer, 1, [&] { return viewer.feeling()->felt().count == 0; });
     viewer.options.mode = Mode::pull;
@@ -227,7 +227,7 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
     viewer.options.tip = 0.004f;
     viewer.options.mode = Mode::dent;
     auto until = [&](auto holds) { wait_until(viewer, 1, holds); };
-    auto ticks = [&] { return viewer.feeling() ? viewer.feeling()->timing().periods.count() : 0; };
+    auto ticks = [&] { return viewer.feeling() ? viewer.feeling()->loop().timing().periods.count() : 0; };
     auto lasting = [&] { return viewer.feeling()->felt().lasting; };
     // From below the body to above it and back: through it, if the hand went straight.
     for (int i = 0; i < 20; ++i) {
@@ -276,14 +276,14 @@ TEST_F(ViewerTest, ASliderLeavesTheHandsDeviceOpen) {
     viewer.options.mode = Mode::dent;
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
-    const FeelingHand* hand = viewer.feeling();
-    const LoopTiming* timing = &hand->timing();
+    const FeltHand* hand = viewer.feeling();
+    const LoopTiming* timing = &hand->loop().timing();
     for (int i = 1; i <= 3; ++i) {
         viewer.change({"body.1.touch.width=0.00" + std::to_string(i)}, i > 1);
         viewer.options.tip = 0.002f * float(i);
         viewer.advance(1);
         EXPECT_EQ(viewer.feeling(), hand);
-        EXPECT_EQ(&viewer.feeling()->timing(), timing);
+        EXPECT_EQ(&viewer.feeling()->loop().timing(), timing);
     }
     viewer.change({"body.1.mapping=\"one-to-one\""});  // how surfaces hang, too
     viewer.advance(1);
@@ -300,8 +300,8 @@ TEST_F(ViewerTest, APictureShowsOneTick) {
     ASSERT_TRUE(viewer.feeling());
     wait_until(viewer, 1, [&] { return viewer.feeling()->felt().time > 0; });
     const double time = viewer.feeling()->felt().time;
-    const auto ticks = viewer.feeling()->timing().periods.count();
-    while (viewer.feeling()->timing().periods.count() < ticks + 5) viewer.image();
+    const auto ticks = viewer.feeling()->loop().timing().periods.count();
+    while (viewer.feeling()->loop().timing().periods.count() < ticks + 5) viewer.image();
     EXPECT_EQ(viewer.feeling()->felt().time, time);
     viewer.advance(1);
     EXPECT_GT(viewer.feeling()->felt().time, time);

@@ -1,0 +1,53 @@
+#include "palpate/run/felt_hand.h"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+constexpr double shortest = 1e-4, longest = 0.5;  // s: over which a way tells a velocity
+
+// m/s, one a vertex; none where nobody knows.
+std::vector<vec3> velocities(const std::vector<vec3>& from, const std::vector<vec3>& to, double seconds) {
+    std::vector<vec3> speeds;
+    if (from.size() != to.size() || seconds > longest || from == to) return speeds;
+    speeds.resize(to.size());
+    for (std::size_t i = 0; i < to.size(); ++i) speeds[i] = (to[i] - from[i]) / float(seconds);
+    return speeds;
+}
+
+}  // namespace
+
+FeltHand::FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth)
+    : touch_(std::move(device), std::move(settings), warmth), start_(start) {}
+
+void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach) {
+    felt_ = touch_.felt();
+    before_.resize(skins.size());
+    std::vector<std::vector<vec3>> speeds;
+    std::vector<Touchable> surfaces;
+    for (const Skin& skin : skins)
+        speeds.push_back(
+            velocities(before_[speeds.size()], skin.positions, std::max(time - before_time_, shortest)));
+    for (std::size_t s = 0; s < skins.size(); ++s)
+        surfaces.push_back({skins[s].positions, *skins[s].triangles, speeds[s], skins[s].is_sheet});
+    const bool ticked = felt_.time > 0;
+    touch_.feel(Patch(surfaces, ticked ? felt_.proxy : start_, reach, time));
+    for (std::size_t s = 0; s < skins.size(); ++s) before_[s] = skins[s].positions;
+    before_time_ = time;
+    // Nothing is left of the old surfaces only once the touch knows the new ones.
+    if (begins_anew_) touch_.begin_anew();
+    begins_anew_ = false;
+}
+
+void FeltHand::begin_anew() {
+    expect_jump();
+    begins_anew_ = true;
+}
+
+void FeltHand::tick(double now) {
+    touch_.tick(now);
+    felt_ = touch_.felt();
+}
+
+}  // namespace palpate
