@@ -1,7 +1,8 @@
-// All devices that come with Palpate, by themselves and decorated, and one whose driver is written outside
+// All devices that come with Palpate, by themselves and decorated, and one of a program outside of
 // it.
 #include "tests/touch/conformance.h"
 
+#include "examples/programs/pen.h"
 #include "palpate/touch/devices/clutch.h"
 #include "palpate/touch/devices/faulty.h"
 #include "palpate/touch/devices/mouse.h"
@@ -15,27 +16,6 @@ namespace palpate {
 namespace {
 
 const Path path = {{0, vec3(0, 0.1f, 0)}, {0.5, vec3(0.02f, -0.01f, 0)}, {2, vec3(0.1f, 0.05f, -0.03f)}};
-
-// A driver as anybody may write it: a hand that goes round, and a motor that holds one number.
-class Carousel : public Device {
- public:
-    DeviceSpec spec() const override { return {.name = "carousel", .peak_force = 2, .lasting_force = 1}; }
-    void open() override {}
-    bool read(double now, DeviceState& state) noexcept override {
-        state = {.pose = {.place = dvec3(std::cos(now), 0, std::sin(now))}, .time = now};
-        return true;
-    }
-    bool write(const Wrench& wrench) noexcept override {
-        x_ = wrench.force.x, y_ = wrench.force.y, z_ = wrench.force.z;
-        return true;
-    }
-    void stop() noexcept override { x_ = y_ = z_ = 0; }
-
-    Wrench wrench() const { return {vec3(float(x_), float(y_), float(z_))}; }
-
- private:
-    std::atomic<float> x_ = 0, y_ = 0, z_ = 0;  // N
-};
 
 // A hand, and what `around` puts around it.
 template <class Around>
@@ -80,11 +60,11 @@ std::unique_ptr<Device> wrapped_often(std::unique_ptr<Device> device) {
 }
 
 const std::vector<Specimen> all = {
-    {"Carousel",
+    {"Pen",
      [] {
-         auto device = std::make_unique<Carousel>();
-         const Carousel* inside = device.get();
-         return Subject{std::move(device), [inside] { return inside->wrench(); }};
+         auto pen = std::make_unique<Pen>();
+         const Pen* inside = pen.get();
+         return Subject{std::move(pen), [inside] { return inside->wrench(); }};
      }},
     {"Hand", hand_in(alone)},
     {"QuantisedLateHand", hand_in(alone, {.resolution = 2.5e-5, .delay = 0.0025})},
