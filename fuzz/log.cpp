@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!(log.rate > 0)) std::abort();
         double last = -INFINITY;
         for (const palpate::Tick& tick : log.ticks) {
-            if (!(tick.now >= last) || !std::isfinite(tick.hand.time)) std::abort();
+            if (!(tick.now >= last) || !std::isfinite(tick.state.time)) std::abort();
             last = tick.now;
         }
     } catch (const palpate::Error& error) {

@@ -15,7 +15,7 @@ struct Contact {
     dvec3 velocity;  // m/s, of the surface there
     int surface;     // the number of its Touchable,
     int triangle;    // which of its triangles,
-    dvec3 weights;   // and where in that: of its corners
+    dvec3 weights;   // and where in that: barycentric
     double depth;  // m, how far the hand is behind the surface along the normal; the depths times the normals
                    // are what leads from the hand to where the proxy would be without friction
     bool behind = false;  // of a sheet: whether it is touched from its other side
@@ -25,9 +25,9 @@ struct Contact {
 };
 
 /// A ball that follows the hand but never enters a surface (the god-object of Zilles and Salisbury 1995, the
-/// size of Ruspini, Kolarov and Khatib 1997): what the hand has sunk in, a spring between the two pushes
-/// back. Between two calls the ball rolls along at most three surfaces at once, by exact distances, so that
-/// neither speed nor a sharp edge takes it through. Allocates nothing.
+/// size of Ruspini, Kolarov and Khatib 1997): what the hand has sunk in, a virtual coupling pushes back, a
+/// spring between the two. Between two calls the ball rolls along at most three surfaces at once, by exact
+/// distances, so that neither speed nor a sharp edge takes it through. Allocates nothing.
 class Proxy {
  public:
     explicit Proxy(double radius) : radius_(radius) {}

@@ -89,9 +89,9 @@ class Touch {
     /// The next of the pushes by which the hand gives to surfaces what they gave to it: a simulation takes
     /// all that there are at each of its steps. Their sum is the time integral of the force that was written
     /// to the device, the other way, up to the last tick; a slow reader loses nothing of it. Where a force
-    /// fades after the hand has left, it is the surface that it left which is pushed. What a watchdog took back
-    /// counts for SafetySettings::lost at most. Triangles are those of the patch that was felt at Push::time,
-    /// so take all before another one has others. False if there is none.
+    /// fades after the hand has left, it is the surface that it left which is pushed. What a watchdog took
+    /// back counts for SafetySettings::lost at most. Triangles are those of the patch that was felt at
+    /// Push::time, so take all before another one has others. False if there is none.
     bool next(Push& push) noexcept { return pushes_.next(push); }
 
     /// Of the loop that ticks it, Hz: below 1000, walls are as much less stiff, or they would not be still.
