@@ -33,7 +33,6 @@ class FeltHand {
     /// As it was at the last feel() or tick(), so that all of a picture shows the same moment.
     const Felt& felt() const { return felt_; }
     Touch& touch() { return touch_; }
-    const Touch& touch() const { return touch_; }
     /// Of one that is live.
     const TouchLoop& loop() const { return *loop_; }
 

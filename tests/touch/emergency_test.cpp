@@ -34,7 +34,9 @@ class Pressing final : public Device {
     DeviceSpec spec() const override { return {.name = "motor"}; }
     void open() override {}
     bool read(double now, DeviceState& state) noexcept override {
-        if (start_ < 0) start_ = now;
+        // Where the machine let the loop stall on the way in, nothing pushes: once more, from above.
+        const bool again = motor_.pushed == 0 && now - start_ > 0.4;
+        if (start_ < 0 || again) start_ = now;
         const double depth = std::clamp((now - start_ - 0.05) / 0.1, -0.2, 1.0) * 0.005;
         state = {.pose = {.place = dvec3(0, 0.003 - depth, 0)}, .time = now};
         return true;

@@ -56,7 +56,7 @@ void VirtualHand::open() {
     require(s.delay >= 0 && s.delay <= most_delay, "a delay that cannot be", "give it in s, from 0 to 1");
     waiting_.resize(std::size_t(s.delay * fastest_loop) + 2);
     first_ = count_ = 0;
-    push_ = {};
+    acting_ = {};
     start_.reset();
 }
 
@@ -85,12 +85,12 @@ bool VirtualHand::write(const Wrench& wrench) noexcept {
 // A write that was under way when the device was stopped still bears the older count.
 void VirtualHand::stop() noexcept { ++stops_; }
 
-vec3 VirtualHand::force() const { return push_.stops == stops_.load() ? push_.force : vec3(0); }
+vec3 VirtualHand::force() const { return acting_.stops == stops_.load() ? acting_.force : vec3(0); }
 
 // The forces whose time has come; the last of them acts.
 void VirtualHand::take_due() {
     for (; count_ > 0 && waiting_[first_].from <= time_; --count_) {
-        push_ = waiting_[first_];
+        acting_ = waiting_[first_];
         first_ = (first_ + 1) % waiting_.size();
     }
 }

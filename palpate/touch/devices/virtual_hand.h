@@ -45,7 +45,7 @@ class VirtualHand final : public Device {
 
  private:
     // A force, and how often the device had been stopped when it was written: a later stop() makes it none.
-    struct Push {
+    struct Written {
         double from = 0;  // s since the first read
         vec3 force = vec3(0);
         unsigned stops = 0;
@@ -59,8 +59,8 @@ class VirtualHand final : public Device {
     std::optional<double> start_;  // of the loop's clock
     double time_ = 0;              // s since then
     dvec3 position_ = dvec3(0), velocity_ = dvec3(0);
-    Push push_;                  // that acts
-    std::vector<Push> waiting_;  // a ring: the delayed ones, in their order
+    Written acting_;                // that acts
+    std::vector<Written> waiting_;  // a ring: the delayed ones, in their order
     std::size_t first_ = 0, count_ = 0;
     std::atomic<unsigned> stops_ = 0;
 };
