@@ -25,8 +25,8 @@ struct LoopTiming {
 };
 
 /// Ticks touches on a thread of its own, a thousand times a second by absolute deadlines, with whatever
-/// priority the system grants; a Watchdog lets go of them if it gets stuck.
-/// Both end with this object, and the devices are stopped. The touches must outlive it.
+/// priority the system grants; a Watchdog lets go of them if it gets stuck. Both end with this object, and
+/// the devices are stopped. The touches must outlive it.
 class TouchLoop {
  public:
     /// Throws Error if the rate or the spin is out of bounds, or if one of the touches is not there.

@@ -228,9 +228,9 @@ path = [[0, 0, 0, 0, 0, 0, 0], [1, 0.1, 0, 0, 0, 90, 0]]
 )");
     EXPECT_EQ(scene.moves.at(0).body, "cube");
     EXPECT_EQ(scene.moves[0].nodes.below, 0.1f);
-    EXPECT_LT(
-        glm::distance(pose(scene.moves[0].path, 0.5).turn * dvec3(1, 0, 0), dvec3(std::sqrt(0.5), 0, -std::sqrt(0.5))),
-        1e-6f);
+    EXPECT_LT(glm::distance(pose(scene.moves[0].path, 0.5).turn * dvec3(1, 0, 0),
+                            dvec3(std::sqrt(0.5), 0, -std::sqrt(0.5))),
+              1e-6f);
     const std::string path = "path = [[0, 0, 0, 0]]\n", nodes = "nodes = { below = 0.1 }\n";
     expect_words(refusal(small + "[[move]]\n" + nodes), {"move 1", "line 8", "path"});
     expect_words(refusal(small + "[[move]]\n" + path), {"which nodes"});
