@@ -205,7 +205,7 @@ inline Carrier quilt_on_a_triangle_cloth() {
 /// as faces.
 inline Body grid_net(ivec3 dims, float spacing) {
     const Body box = lattice(dims, spacing, {.stiffness = 100, .mass = 1});
-    std::vector<NetSpring> springs;
+    std::vector<Spring> springs;
     for (uvec2 ends : spring_ends(box)) springs.push_back({int(ends.x), int(ends.y), 100});
     std::vector<uvec3> faces;
     for (const HullTriangle& t : hull(box)) faces.emplace_back(t.nodes[0], t.nodes[1], t.nodes[2]);

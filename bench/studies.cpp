@@ -15,7 +15,7 @@ namespace palpate::studies {
 Body chain(const Damping& damping) {
     std::vector<vec3> positions;
     std::vector<float> masses;
-    std::vector<NetSpring> springs;
+    std::vector<Spring> springs;
     for (int i = 0; i < 9; ++i) {
         positions.push_back({0.1f * float(i), 0, 0});
         masses.push_back(i == 0 ? 0 : 0.02f + 0.002f * float(i));
@@ -155,7 +155,7 @@ double pulse_speed(bool shear) {
     const State state = solver->state();
     double sum = 0, weight = 0;
     for (std::size_t i = 0; i < body.count(); ++i) {
-        const ivec3 at = body.stencil().at[i];
+        const ivec3 at = body.at[i];
         if (at.y != dims.y / 2 || at.z != dims.z / 2 || at.x <= middle) continue;
         const double rest = double(h * float(at[shear ? 1 : 0]));
         const double u = state.positions[i][shear ? 1 : 0] - rest;
@@ -189,7 +189,7 @@ double cantilever_sag(int cells) {
     double sag = 0;
     int ends = 0;
     for (std::size_t i = 0; i < body.count(); ++i)
-        if (body.stencil().at[i].x == length) {
+        if (body.at[i].x == length) {
             sag += double(body.positions[i].y) - state.positions[i].y;
             ++ends;
         }

@@ -24,13 +24,6 @@ Simulation with(Backend backend, int threads = 1, Integrator integrator = Integr
     return {.backend = backend, .threads = threads, .integrator = integrator};
 }
 
-// Its springs written out.
-Body in_a_table(Body body) {
-    body.springs = table(body);
-    body.cells.clear();  // which need a grid
-    return body;
-}
-
 // The same surface with its vertices in no order.
 Mesh shuffled(const Mesh& mesh) {
     std::vector<unsigned> place(mesh.positions.size());
@@ -46,7 +39,7 @@ Mesh shuffled(const Mesh& mesh) {
 // Every link whole, as in 2005; one edge pinned.
 Body whole_box(int nodes) {
     Body box = lattice(ivec3(nodes), 0.01f, tissue);
-    Stencil& stencil = std::get<Stencil>(box.springs);
+    GridSprings& stencil = *box.grid();
     for (std::size_t i = 0; i < box.count(); ++i)
         for (std::size_t l = 0; l < stencil.links.size(); ++l)
             if (stencil.quarters(i, l) > 0) {
@@ -111,8 +104,8 @@ std::vector<Case> lattice_cases() {
     add("27³, a stiffness for each node", hard, with(Backend::cpu));
     add("27³, 32 links (2012)",
         lattice(ivec3(27), 0.01f, SpringKinds{100, 50, 10}, {.mass = 1, .damping = 5}), with(Backend::cpu));
-    add("27³, springs in a table", in_a_table(box), with(Backend::cpu));
-    add("64³, springs in a table", in_a_table(large), with(Backend::cpu));
+    add("27³, springs in a table", without_grid(box), with(Backend::cpu));
+    add("64³, springs in a table", without_grid(large), with(Backend::cpu));
     for (const auto& [integrator, name] : names(Integrator{}))
         if (integrator != Integrator::verlet)
             add(fmt::format("27³, {}", name), box, with(Backend::cpu, 1, integrator));

@@ -65,36 +65,42 @@ void check(const Body& body) {
             "say how far its nodes are apart, in m");
     require(is_some(body.damping) && is_some(body.link_damping), "a damping that is negative or not finite",
             "use 0 or more");
-    int links = 0;
-    if (const auto* stencil = std::get_if<Stencil>(&body.springs)) {
-        links = int(stencil->links.size());
-        require(links <= 32, "more than 32 links a node", "write its springs out in a Table");
-        require(stencil->at.size() == count && stencil->shares.size() == count &&
-                    (stencil->strength.empty() || stencil->strength.size() == count),
-                "a stencil of another number of nodes", "give every node a place in the grid, and shares");
-        require(is_compact(stencil->at), "a grid with two nodes at one place, or in too large a box",
-                "give every node a place of its own, with few empty ones between them");
-        for (const Link& link : stencil->links)
-            require(is_some(link.stiffness) && is_some(link.rest),
-                    "a link whose stiffness or length is negative or not finite", "give them in N/m and m");
-        require(std::ranges::all_of(stencil->strength, is_some), "a strength that is negative or not finite",
-                "use 0 or more");
-    } else {
-        const Table& written = std::get<Table>(body.springs);
-        links = written.width;
-        require(links >= 0 && written.ties.size() == count * std::size_t(links),
-                "a table of another number of springs",
-                "give every node `width` ties, empty ones among them");
-        for (const Tie& tie : written.ties)
-            require(tie.to == -1 ||
-                        (has(tie.to) && is_some(tie.share) && is_some(tie.stiffness) && is_some(tie.rest)),
+    require(body.at.empty() || body.at.size() == count, "places in the grid of another number of nodes",
+            "give every node one, or none");
+    require(is_compact(body.at), "a grid with two nodes at one place, or in too large a box",
+            "give every node a place of its own, with few empty ones between them");
+    for (const Term& term : body.terms)
+        if (const auto* grid = std::get_if<GridSprings>(&term)) {
+            require(grid == body.grid(), "springs of a grid that are not its first term",
+                    "list other springs one by one");
+            require(body.at.size() == count, "springs of a grid without one",
+                    "give every node a place in it");
+            require(grid->links.size() <= 32, "more than 32 links a node", "list its springs one by one");
+            require(
+                grid->shares.size() == count && (grid->strength.empty() || grid->strength.size() == count),
+                "shares or strengths of another number of nodes", "give every node its own");
+            for (const Link& link : grid->links)
+                require(is_some(link.stiffness) && is_some(link.rest),
+                        "a link whose stiffness or length is negative or not finite",
+                        "give them in N/m and m");
+            require(std::ranges::all_of(grid->strength, is_some), "a strength that is negative or not finite",
+                    "use 0 or more");
+        } else {
+            for (const Spring& spring : std::get<ListedSprings>(term).springs)
+                require(
+                    has(spring.a) && has(spring.b) && is_some(spring.stiffness) && is_some(spring.rest),
                     "a spring to a node that it does not have, or whose numbers are negative or not finite",
-                    "count nodes from 0; -1 is no spring");
-    }
-    require(body.fan >= 0 && body.fan <= links, "a fan of more springs than a node has",
-            "use as many, or 0 in a solid");
-    require(body.cells.empty() || std::holds_alternative<Stencil>(body.springs), "cells without a grid",
-            "keep its Stencil, or leave the cells out");
+                    "count nodes from 0");
+        }
+    const int links = body.grid() ? int(body.grid()->links.size()) : 0;
+    const bool has_rings = !body.rings.empty() || links == 0;
+    require(
+        body.fan >= 0 && (has_rings ? body.rings.size() == count * std::size_t(body.fan) : body.fan <= links),
+        "a fan of more springs than a node has, or rings of another length", "use as many, or 0 in a solid");
+    require(std::ranges::all_of(body.rings, [&](int node) { return node == -1 || has(node); }),
+            "a ring with a node that it does not have", "count nodes from 0; -1 is none");
+    require(body.cells.empty() || body.at.size() == count, "cells without a grid",
+            "give every node a place in it, or leave the cells out");
     for (const auto& cell : body.cells)
         require(std::ranges::all_of(cell, has), "a cell of a node that it does not have",
                 "count nodes from 0");
@@ -103,22 +109,91 @@ void check(const Body& body) {
                 "count nodes from 0");
 }
 
-Table table(const Body& body) {
-    if (const auto* written = std::get_if<Table>(&body.springs)) return *written;
-    const Stencil& stencil = body.stencil();
-    const GridIndex node_at(stencil.at);
-    Table table{int(stencil.links.size()), {}};
-    table.ties.reserve(body.count() * stencil.links.size());
+void GridSprings::set_quarters(std::size_t node, std::size_t link, int quarters) {
+    const std::size_t bits = in_quarters() ? 3 : 1, at = bits * link;
+    const std::uint64_t all = in_quarters() ? 7 : 1,
+                        value = std::uint64_t(in_quarters() ? quarters : quarters / 4);
+    shares[node] = (shares[node] & ~(all << at)) | value << at;
+}
+
+namespace {
+
+// Ties to all that the grid's links lead to.
+void add_ties(const Body& body, const GridSprings& grid, std::vector<std::vector<Tie>>& ties) {
+    const GridIndex node_at(body.at);
     for (std::size_t i = 0; i < body.count(); ++i)
-        for (std::size_t l = 0; l < stencil.links.size(); ++l) {
-            const Link& link = stencil.links[l];
-            const int quarters = stencil.quarters(i, l);
-            const int to = quarters > 0 ? node_at.at(stencil.at[i] + link.offset) : -1;
+        for (std::size_t l = 0; l < grid.links.size(); ++l) {
+            const Link& link = grid.links[l];
+            const int quarters = grid.quarters(i, l);
+            const int to = quarters > 0 ? node_at.at(body.at[i] + link.offset) : -1;
             const float strength =
-                stencil.strength.empty() || to < 0 ? 1 : 0.5f * (stencil.strength[i] + stencil.strength[to]);
-            table.ties.push_back({to, 0.25f * float(quarters), strength * link.stiffness, link.rest});
+                grid.strength.empty() || to < 0 ? 1 : 0.5f * (grid.strength[i] + grid.strength[to]);
+            ties[i].push_back({to, 0.25f * float(quarters), strength * link.stiffness, link.rest});
         }
+}
+
+void add_ties(const Body&, const ListedSprings& listed, std::vector<std::vector<Tie>>& ties) {
+    for (const Spring& spring : listed.springs) {
+        ties[std::size_t(spring.a)].push_back({spring.b, 1, spring.stiffness, spring.rest});
+        ties[std::size_t(spring.b)].push_back({spring.a, 1, spring.stiffness, spring.rest});
+    }
+}
+
+// The neighbours round a node come first, each with the first spring to it, if there is one.
+std::vector<Tie> in_a_ring(const Body& body, std::size_t node, std::vector<Tie> ties) {
+    std::vector<Tie> sorted;
+    const auto ring = std::span(body.rings).subspan(node * std::size_t(body.fan), std::size_t(body.fan));
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const int to = ring[k];
+        const auto found = std::ranges::find(ties, to, &Tie::to);
+        const bool again = std::ranges::find(ring.first(k), to) != ring.first(k).end();
+        if (to < 0) {
+            sorted.push_back({});
+        } else if (again || found == ties.end()) {
+            sorted.push_back(
+                {to, 0, 0, glm::distance(body.positions[node], body.positions[std::size_t(to)])});
+        } else {
+            sorted.push_back(*found);
+            ties.erase(found);
+        }
+    }
+    sorted.insert(sorted.end(), ties.begin(), ties.end());
+    return sorted;
+}
+
+}  // namespace
+
+Table table(const Body& body) {
+    std::vector<std::vector<Tie>> lists(body.count());
+    for (const Term& term : body.terms)
+        std::visit([&](const auto& springs) { add_ties(body, springs, lists); }, term);
+    if (!body.rings.empty())
+        for (std::size_t i = 0; i < lists.size(); ++i) lists[i] = in_a_ring(body, i, std::move(lists[i]));
+    Table table;
+    for (const auto& list : lists) table.width = std::max(table.width, int(list.size()));
+    table.ties.reserve(lists.size() * std::size_t(table.width));
+    for (const auto& list : lists) {
+        table.ties.insert(table.ties.end(), list.begin(), list.end());
+        table.ties.resize(table.ties.size() + std::size_t(table.width) - list.size());
+    }
     return table;
+}
+
+Body without_grid(Body body) {
+    const Table springs = table(body);
+    if (body.grid() && body.fan > 0) {
+        for (std::size_t i = 0; i < body.count(); ++i)
+            for (int k = 0; k < body.fan; ++k) body.rings.push_back(springs.of(i)[std::size_t(k)].to);
+    }
+    ListedSprings listed;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (const Tie& tie : springs.of(i))
+            if (tie.to > int(i) && tie.share > 0)
+                listed.springs.push_back({int(i), tie.to, tie.share * tie.stiffness, tie.rest});
+    body.terms = {std::move(listed)};
+    body.at.clear();
+    body.cells.clear();
+    return body;
 }
 
 std::vector<uvec2> spring_ends(const Body& body) {
@@ -132,7 +207,7 @@ std::vector<uvec2> spring_ends(const Body& body) {
 
 std::vector<ivec3> cell_places(const Body& body) {
     std::vector<ivec3> places;
-    for (const auto& nodes : body.cells) places.push_back(body.stencil().at[nodes[0]]);
+    for (const auto& nodes : body.cells) places.push_back(body.at[nodes[0]]);
     return places;
 }
 

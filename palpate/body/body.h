@@ -20,10 +20,9 @@ struct Link {
 };
 
 /// Springs implied by a grid (2005, section 3.1): a list of links that all nodes share, and for each node how
-/// much of each link there is. A link and its opposite have the same share.
-struct Stencil {
+/// much of each link there is. A link and its opposite have the same share. Body::at says where nodes stand.
+struct GridSprings {
     std::vector<Link> links;  // at most 32
-    std::vector<ivec3> at;    // each node's place in the grid
     /// One word a node, the first link lowest. Up to 21 links: three bits each, in quarters, from 0 for none
     /// to 4 for a whole link. More links: one bit each, a whole link or none.
     std::vector<std::uint64_t> shares;
@@ -37,8 +36,58 @@ struct Stencil {
     int quarters(std::size_t node, std::size_t link) const {
         return in_quarters() ? int(shares[node] >> 3 * link & 7) : int(shares[node] >> link & 1) * 4;
     }
+    /// The same set, in quarters; where there is no room for quarters, 0 or 4.
+    void set_quarters(std::size_t node, std::size_t link, int quarters);
 
-    bool operator==(const Stencil&) const = default;
+    bool operator==(const GridSprings&) const = default;
+};
+
+/// A spring between two nodes.
+struct Spring {
+    int a, b;
+    float stiffness;  // N/m
+    float rest = 0;   // m
+
+    bool operator==(const Spring&) const = default;
+};
+
+/// Springs that are listed one by one: of bodies without a grid (the connection buffer of 2012), and stitches
+/// and ropes beside a grid's.
+struct ListedSprings {
+    std::vector<Spring> springs;
+
+    bool operator==(const ListedSprings&) const = default;
+};
+
+/// What pulls at nodes: a kind of force with its numbers. Its equations are in solver/terms/.
+using Term = std::variant<GridSprings, ListedSprings>;
+
+/// Nodes, and what pulls at them. Plain data; the moving state belongs to a Solver.
+/// In a grid, nodes stand in its order, x fastest, with no gaps: nodes that do not exist take no memory.
+struct Body {
+    std::string name;
+    std::vector<vec3> positions;      // m, at rest
+    std::vector<float> inverse_mass;  // 1/kg; 0: no force moves the node
+    std::vector<float> area;          // m², of the outside that a node stands for; 0 inside the body
+    std::vector<float> cover;  // m, from a node out to the surface that hangs on it; negative if within
+    std::vector<ivec3> at;     // each node's place in the grid; empty where there is none
+    std::vector<Term> terms;   // the springs of a grid, if any, come first
+    /// In a sheet, so many neighbours of each node go round it counter-clockwise, so that their cross
+    /// products sum to its normal; 0 in a solid. In a grid they are the first links; else `rings` lists them,
+    /// for each node in turn: of a closed ring that is shorter the first again, of an open one -1.
+    int fan = 0;
+    std::vector<int> rings;
+    std::vector<std::array<int, 8>> cells;  // filled cells: corner nodes, x fastest, then y, then z
+    std::vector<std::array<int, 3>>
+        faces;               // triangles of nodes, where the body is a sheet or a net of springs
+    float spacing = 0;       // m, of the grid; elsewhere the mean length of the springs
+    float damping = 0;       // 1/s, of velocities
+    float link_damping = 0;  // s: each spring resists its stretching with this × stiffness, N s/m
+
+    std::size_t count() const { return positions.size(); }
+    /// The springs of its grid; null where it has none.
+    const GridSprings* grid() const { return terms.empty() ? nullptr : std::get_if<GridSprings>(&terms[0]); }
+    GridSprings* grid() { return terms.empty() ? nullptr : std::get_if<GridSprings>(&terms[0]); }
 };
 
 /// A spring as the node at one of its ends sees it.
@@ -51,8 +100,8 @@ struct Tie {
     bool operator==(const Tie&) const = default;
 };
 
-/// Springs written out: as many ties for each node, some of them empty. For bodies without a grid (the
-/// connection buffer of 2012), and for whoever wants to walk over the springs of any body.
+/// All springs of a body as its nodes see them: as many ties for each node, some of them empty. The first
+/// Body::fan go round it in a sheet.
 struct Table {
     int width = 0;          // ties a node
     std::vector<Tie> ties;  // count × width
@@ -65,30 +114,6 @@ struct Table {
     bool operator==(const Table&) const = default;
 };
 
-/// Nodes and the springs between them. Plain data; the moving state belongs to a Solver.
-/// In a grid, nodes stand in its order, x fastest, with no gaps: nodes that do not exist take no memory.
-struct Body {
-    std::string name;
-    std::vector<vec3> positions;      // m, at rest
-    std::vector<float> inverse_mass;  // 1/kg; 0: no force moves the node
-    std::vector<float> area;          // m², of the outside that a node stands for; 0 inside the body
-    std::vector<float> cover;  // m, from a node out to the surface that hangs on it; negative if within
-    std::variant<Stencil, Table> springs;
-    /// In a sheet, the first so many springs of each node go round it counter-clockwise, so that their cross
-    /// products sum to its normal; 0 in a solid.
-    int fan = 0;
-    std::vector<std::array<int, 8>> cells;  // filled cells: corner nodes, x fastest, then y, then z
-    std::vector<std::array<int, 3>>
-        faces;               // triangles of nodes, where the body is a sheet or a net of springs
-    float spacing = 0;       // m, of the grid; elsewhere the mean length of the springs
-    float damping = 0;       // 1/s, of velocities
-    float link_damping = 0;  // s: each spring resists its stretching with this × stiffness, N s/m
-
-    std::size_t count() const { return positions.size(); }
-    /// Of a body in a grid.
-    const Stencil& stencil() const { return std::get<Stencil>(springs); }
-};
-
 /// What messages call it.
 std::string name_in_errors(const Body& body);
 
@@ -96,8 +121,11 @@ std::string name_in_errors(const Body& body);
 /// what is not finite. Whatever makes a solver or hangs a surface on a body asks this first.
 void check(const Body& body);
 
-/// The springs of any body written out; a stencil's links stay in their order.
+/// The springs of any body as its nodes see them; a grid's links stay in their order, and come first.
 Table table(const Body& body);
+
+/// The same body with its springs listed one by one, and no grid or cells any more.
+Body without_grid(Body body);
 
 /// The springs of any body, each once: pairs of nodes.
 std::vector<uvec2> spring_ends(const Body& body);

@@ -26,24 +26,10 @@ void weigh(Body& body, const ClothSettings& settings) {
     body.cover.assign(body.count(), 0);
 }
 
-// Mean length of the springs that are there.
-float mean_rest(const Table& springs) {
+float mean_rest(std::span<const Spring> springs) {
     double sum = 0;
-    int count = 0;
-    for (const Tie& tie : springs.ties)
-        if (tie.to >= 0 && tie.stiffness > 0) sum += tie.rest, ++count;
-    return count > 0 ? float(sum / count) : 0;
-}
-
-// Lists of ties, one a node, as one table.
-Table pack(const std::vector<std::vector<Tie>>& lists) {
-    Table packed;
-    for (const auto& list : lists) packed.width = std::max(packed.width, int(list.size()));
-    for (const auto& list : lists) {
-        packed.ties.insert(packed.ties.end(), list.begin(), list.end());
-        packed.ties.resize(packed.ties.size() + std::size_t(packed.width) - list.size());
-    }
-    return packed;
+    for (const Spring& spring : springs) sum += spring.rest;
+    return springs.empty() ? 0 : float(sum / double(springs.size()));
 }
 
 // The neighbours of a vertex in turn, counter-clockwise; closed if its triangles go all the way round.
@@ -105,7 +91,7 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
     Body body;
     body.spacing = spacing;
     body.fan = 4;
-    Stencil& springs = body.springs.emplace<Stencil>();
+    GridSprings springs;
     const float stiffness[] = {settings.stiffness.structural, settings.stiffness.shear,
                                settings.stiffness.flexion};
     for (std::size_t l = 0; l < cloth_links.size(); ++l)
@@ -117,7 +103,7 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
         return glm::all(glm::greaterThanEqual(p, ivec3(0))) && glm::all(glm::lessThan(p, size));
     };
     for_each_place(size, [&](ivec3 p) {
-        springs.at.push_back(p);
+        body.at.push_back(p);
         body.positions.push_back(spacing * vec3(p));
         std::uint64_t shares = 0;
         for (std::size_t l = 0; l < springs.links.size(); ++l)
@@ -127,11 +113,12 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
         for (int l = 4; l < 8; ++l) squares += in_grid(p + cloth_links[l]);  // the diagonals
         body.area.push_back(spacing * spacing * float(std::max(squares, 1)) / 4);
 
-        const int i = int(springs.at.size()) - 1, right = i + 1, up = i + dims.x;
+        const int i = int(body.at.size()) - 1, right = i + 1, up = i + dims.x;
         if (p.x + 1 == dims.x || p.y + 1 == dims.y) return;
         body.faces.push_back({i, right, up + 1});
         body.faces.push_back({i, up + 1, up});
     });
+    body.terms = {std::move(springs)};
     weigh(body, settings);
     return body;
 }
@@ -144,16 +131,17 @@ Body cloth(const Mesh& mesh, const ClothSettings& settings) {
     // One place more than an open ring has neighbours, so that its ends do not meet in the fan.
     for (const Ring& ring : rings) body.fan = std::max(body.fan, int(ring.nodes.size()) + !ring.closed);
 
-    auto tie = [&](std::size_t from, int to, float stiffness) {
-        return Tie{to, 1, stiffness, glm::distance(mesh.positions[from], mesh.positions[std::size_t(to)])};
+    ListedSprings listed;
+    auto add = [&](int a, int b, float stiffness) {
+        listed.springs.push_back(
+            {a, b, stiffness, glm::distance(mesh.positions[std::size_t(a)], mesh.positions[std::size_t(b)])});
     };
-    std::vector<std::vector<Tie>> ties(mesh.positions.size());
-    for (std::size_t v = 0; v < ties.size(); ++v) {
-        for (int n : rings[v].nodes) ties[v].push_back(tie(v, n, settings.stiffness.structural));
-        // A closed ring shorter than the fan repeats its first neighbour, without a spring, to close it.
-        Tie rest;
-        if (rings[v].closed) rest = {rings[v].nodes[0], 0, 0, ties[v][0].rest};
-        ties[v].resize(std::size_t(body.fan), rest);
+    for (int v = 0; v < int(rings.size()); ++v) {
+        const Ring& ring = rings[std::size_t(v)];
+        for (int n : ring.nodes)
+            if (n > v) add(v, n, settings.stiffness.structural);
+        body.rings.insert(body.rings.end(), ring.nodes.begin(), ring.nodes.end());
+        body.rings.resize(std::size_t(v + 1) * std::size_t(body.fan), ring.closed ? ring.nodes[0] : -1);
     }
     body.area.assign(mesh.positions.size(), 0);
     std::map<std::pair<unsigned, unsigned>, unsigned> opposite;  // of each directed edge
@@ -169,19 +157,19 @@ Body cloth(const Mesh& mesh, const ClothSettings& settings) {
     for (const auto& [edge, mine] : opposite) {
         const auto other = opposite.find({edge.second, edge.first});
         if (other == opposite.end() || settings.stiffness.flexion <= 0) continue;
-        ties[mine].push_back(tie(mine, int(other->second), settings.stiffness.flexion));
+        if (mine < other->second) add(int(mine), int(other->second), settings.stiffness.flexion);
     }
     for (std::size_t v = 0; v < body.area.size(); ++v)
         if (!(body.area[v] > 0))
             throw Error(fmt::format("the faces at vertex {} have no area, so it has no mass", v), "the cloth",
                         "drop collapsed faces");
-    body.springs = pack(ties);
-    body.spacing = mean_rest(std::get<Table>(body.springs));
+    body.spacing = mean_rest(listed.springs);
+    body.terms = {std::move(listed)};
     weigh(body, settings);
     return body;
 }
 
-Body net(std::span<const vec3> positions, std::span<const float> masses, std::span<const NetSpring> springs,
+Body net(std::span<const vec3> positions, std::span<const float> masses, std::span<const Spring> springs,
          std::span<const uvec3> faces) {
     if (masses.size() != positions.size())
         throw Error(fmt::format("{} masses of {} nodes", masses.size(), positions.size()), "the net",
@@ -194,17 +182,15 @@ Body net(std::span<const vec3> positions, std::span<const float> masses, std::sp
     Body body;
     body.positions.assign(positions.begin(), positions.end());
     for (float m : masses) body.inverse_mass.push_back(m > 0 ? 1 / m : 0);
-    std::vector<std::vector<Tie>> ties(positions.size());
-    for (const NetSpring& s : springs) {
+    ListedSprings listed;
+    for (Spring s : springs) {
         check(s.a);
         check(s.b);
-        const float rest =
-            s.rest > 0 ? s.rest : glm::distance(positions[std::size_t(s.a)], positions[std::size_t(s.b)]);
-        ties[std::size_t(s.a)].push_back({s.b, 1, s.stiffness, rest});
-        ties[std::size_t(s.b)].push_back({s.a, 1, s.stiffness, rest});
+        if (!(s.rest > 0)) s.rest = glm::distance(positions[std::size_t(s.a)], positions[std::size_t(s.b)]);
+        listed.springs.push_back(s);
     }
-    body.springs = pack(ties);
-    body.spacing = mean_rest(std::get<Table>(body.springs));
+    body.spacing = mean_rest(listed.springs);
+    body.terms = {std::move(listed)};
     body.area.assign(positions.size(), 0);
     body.cover.assign(positions.size(), 0);
     for (uvec3 t : faces) {

@@ -26,17 +26,10 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings);
 /// throws Error if a vertex belongs to no triangle or to several fans of them, naming the first.
 Body cloth(const Mesh& mesh, const ClothSettings& settings);
 
-/// A spring between two nodes of a net.
-struct NetSpring {
-    int a, b;
-    float stiffness;  // N/m
-    float rest = 0;   // m; 0: as far apart as the nodes are
-};
-
-/// Any net of springs. `masses`: kg, one a node; 0 pins it. `faces`: triangles of its nodes,
-/// counter-clockwise from outside, for a surface to hang on; may be empty. Throws Error if a spring or a face
-/// names no node.
-Body net(std::span<const vec3> positions, std::span<const float> masses, std::span<const NetSpring> springs,
+/// Any net of springs; one whose rest length is 0 is as long as its nodes are apart. `masses`: kg, one a
+/// node; 0 pins it. `faces`: triangles of its nodes, counter-clockwise from outside, for a surface to hang
+/// on; may be empty. Throws Error if a spring or a face names no node.
+Body net(std::span<const vec3> positions, std::span<const float> masses, std::span<const Spring> springs,
          std::span<const uvec3> faces = {});
 
 /// The faces of a sheet or a net as a surface to draw.

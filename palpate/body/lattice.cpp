@@ -150,23 +150,23 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
     body.spacing = spacing;
     body.damping = material.damping;
     body.link_damping = material.link_damping;
-    Stencil& springs = body.springs.emplace<Stencil>();
-    springs.links = std::move(links);
+    GridSprings springs{std::move(links), {}, {}};
 
     for_each_place(grid.dims, [&](ivec3 p) {
         if (grid[p] < 0) return;
         grid[p] = int(body.count());
         body.positions.push_back(origin + spacing * vec3(p));
-        springs.at.push_back(p);
+        body.at.push_back(p);
     });
     const int bits = springs.in_quarters() ? 3 : 1, whole = springs.in_quarters() ? 4 : 1;
-    for (ivec3 p : springs.at) {
+    for (ivec3 p : body.at) {
         std::uint64_t shares = 0;
         for (std::size_t l = 0; l < springs.links.size(); ++l)
             if (const ivec3 offset = springs.links[l].offset; grid.at(p + offset) >= 0)
                 shares |= std::uint64_t(equal ? whole : quarters(cells, p, offset)) << bits * l;
         springs.shares.push_back(shares);
     }
+    body.terms = {std::move(springs)};
 
     for_each_place(cells.dims, [&](ivec3 c) {
         if (!cells.at(c)) return;
@@ -284,7 +284,7 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
                              settings.material, equal_links(settings.material), volume);
         const std::vector<float> depth = distance.sample(frame.origin, h, frame.dims + 1);
         for (std::size_t i = 0; i < body.count(); ++i) {
-            const ivec3 p = body.stencil().at[i];
+            const ivec3 p = body.at[i];
             body.cover[i] = -depth[(std::size_t(p.z) * (frame.dims.y + 1) + p.y) * (frame.dims.x + 1) + p.x];
         }
         return body;
@@ -311,7 +311,7 @@ bool restuff(Body& body, const Material& from, const Material& to, double volume
     check_stiffness(to);
     check_mass(to);
     if (equal_links(from) != equal_links(to)) return false;
-    Stencil& springs = std::get<Stencil>(body.springs);
+    GridSprings& springs = *body.grid();
     springs.links = isotropic_links(to, body.spacing);
     springs.strength.clear();
     body.damping = to.damping;

@@ -67,15 +67,14 @@ void strengthen(Body& body, std::span<const float> factors) {
     for (float factor : factors)
         if (!(factor >= 0 && std::isfinite(factor)))
             throw Error("a factor that is negative or not finite", name_in_errors(body), "use 0 or more");
-    if (auto* stencil = std::get_if<Stencil>(&body.springs)) {
-        stencil->strength.resize(body.count(), 1);
-        for (std::size_t i = 0; i < factors.size(); ++i) stencil->strength[i] *= factors[i];
-        return;
-    }
-    Table& springs = std::get<Table>(body.springs);
-    for (std::size_t t = 0; t < springs.ties.size(); ++t)
-        if (Tie& tie = springs.ties[t]; tie.to >= 0)
-            tie.stiffness *= 0.5f * (factors[t / std::size_t(springs.width)] + factors[std::size_t(tie.to)]);
+    for (Term& term : body.terms)
+        if (auto* grid = std::get_if<GridSprings>(&term)) {
+            grid->strength.resize(body.count(), 1);
+            for (std::size_t i = 0; i < factors.size(); ++i) grid->strength[i] *= factors[i];
+        } else {
+            for (Spring& spring : std::get<ListedSprings>(term).springs)
+                spring.stiffness *= 0.5f * (factors[std::size_t(spring.a)] + factors[std::size_t(spring.b)]);
+        }
 }
 
 void pin(Body& body, std::span<const int> nodes) {

@@ -56,10 +56,12 @@ std::vector<Change> with(std::vector<Change> changes, const std::vector<Change>&
 
 float stiffest(const Body& body) {
     float most = 0;
-    if (const auto* grid = std::get_if<Stencil>(&body.springs))
-        for (const Link& link : grid->links) most = std::max(most, link.stiffness);
-    else
-        for (const Tie& tie : std::get<Table>(body.springs).ties) most = std::max(most, tie.stiffness);
+    for (const Term& term : body.terms)
+        if (const auto* grid = std::get_if<GridSprings>(&term))
+            for (const Link& link : grid->links) most = std::max(most, link.stiffness);
+        else
+            for (const Spring& spring : std::get<ListedSprings>(term).springs)
+                most = std::max(most, spring.stiffness);
     return most;
 }
 
@@ -110,7 +112,7 @@ std::vector<double> known_frequencies(const Models& models, const Models& before
     for (std::size_t m = 0; m < known.size(); ++m)
         for (std::size_t old = 0; old < before.models.size(); ++old) {
             const Body &a = models.models[m].body, &b = before.models[old].body;
-            if (same_nodes(a, b) && a.inverse_mass == b.inverse_mass && a.springs == b.springs)
+            if (same_nodes(a, b) && a.inverse_mass == b.inverse_mass && a.terms == b.terms && a.at == b.at)
                 known[m] = play.frequency(old);
         }
     return known;

@@ -98,7 +98,7 @@ float factor_of(const Region& region, const Body& body) {
     if (region.factor > 0) return region.factor;
     const float stiffness =
         region.stiffness > 0 ? region.stiffness : 0.4f * region.youngs_modulus * body.spacing;
-    return stiffness / body.stencil().links[0].stiffness;
+    return stiffness / body.grid()->links[0].stiffness;
 }
 
 void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene,

@@ -65,15 +65,13 @@ Pass make_pass(const Body& body, const Simulation& simulation) {
     pass.damping = body.damping;
     pass.link_damping = body.link_damping;
     pass.fan = body.fan;
-    if (const auto* stencil = std::get_if<Stencil>(&body.springs)) {
-        pass.links = int(stencil->links.size());
-        assert(stencil->links.size() <= std::size(pass.spring));
+    if (const GridSprings* grid = body.grid()) {
+        pass.links = int(grid->links.size());
+        assert(grid->links.size() <= std::size(pass.spring));
         for (int l = 0; l < pass.links; ++l) {
-            const Link& link = stencil->links[l];
+            const Link& link = grid->links[l];
             pass.spring[l] = {link.stiffness, link.stiffness * link.rest, torn_at(link.rest, body), 0};
         }
-    } else {
-        pass.links = std::get<Table>(body.springs).width;
     }
     return pass;
 }

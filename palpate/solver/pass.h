@@ -12,7 +12,7 @@ namespace palpate {
 
 #include "palpate/solver/pass.inl"
 
-/// A pass with all that stays the same for a body: gravity, damping, the springs of its stencil. Nothing
+/// A pass with all that stays the same for a body: gravity, damping, the links of its grid. Nothing
 /// touches it.
 Pass make_pass(const Body& body, const Simulation& simulation);
 

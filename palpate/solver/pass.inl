@@ -2,7 +2,7 @@
 // array holds nothing smaller than a vec4. The host fills it; node.inl reads it.
 
 // A link of a grid's stencil; what a node's own table says is not here.
-struct Spring {
+struct LinkNumbers {
     float stiffness;   // N/m
     float tension;     // stiffness x rest length, N
     float longest;     // ten times its rest length, squared, m^2: beyond, the motion has blown up
@@ -44,5 +44,5 @@ struct Pass {
     vec4  drag[8];     // where to, stiffness in N/m
     ivec4 dragged[2];  // the node that each drag holds, as a backend of the GPU numbers it
     Obstacle obstacle[16];
-    Spring spring[32];
+    LinkNumbers spring[32];
 };

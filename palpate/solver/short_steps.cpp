@@ -47,15 +47,13 @@ std::pair<Body, std::size_t> without_light_nodes(Body body) {
 
 // The same body with no spring much stiffer than most.
 Body without_stiff_springs(Body body) {
-    Table springs = table(body);
+    body = without_grid(std::move(body));
+    std::vector<Spring>& springs = std::get<ListedSprings>(body.terms[0]).springs;
     std::vector<float> all;
-    for (const Tie& tie : springs.ties)
-        if (tie.to >= 0 && tie.share * tie.stiffness > 0) all.push_back(tie.share * tie.stiffness);
+    for (const Spring& spring : springs)
+        if (spring.stiffness > 0) all.push_back(spring.stiffness);
     const float most = float(uneven) * median(all);
-    for (Tie& tie : springs.ties)
-        if (tie.share * tie.stiffness > most) tie.share = most / tie.stiffness;
-    body.springs = std::move(springs);
-    body.cells.clear();  // they belong to a grid
+    for (Spring& spring : springs) spring.stiffness = std::min(spring.stiffness, most);
     return body;
 }
 

@@ -42,7 +42,7 @@ gl::Field field(GLenum format, const std::vector<Value>& values) {
 
 std::vector<uvec4> traits_of(const Body& body, const Placement& placement) {
     std::vector<uvec4> traits(std::size_t(placement.slots), uvec4(0));
-    const auto* stencil = placement.grid ? &body.stencil() : nullptr;
+    const GridSprings* stencil = placement.grid ? body.grid() : nullptr;
     for (std::size_t i = 0; i < body.count(); ++i) {
         uvec4& trait = traits[std::size_t(placement.slot[i])];
         trait.z = std::bit_cast<unsigned>(body.area[i]);
@@ -62,7 +62,7 @@ std::vector<uvec4> traits_of(const Body& body, const Placement& placement) {
 gl::Field ties_of(const Body& body, const Placement& placement) {
     if (placement.grid) {
         std::vector<float> strength(std::size_t(placement.slots), 1.0f);
-        const auto& given = body.stencil().strength;
+        const auto& given = body.grid()->strength;
         for (std::size_t i = 0; i < given.size(); ++i) strength[std::size_t(placement.slot[i])] = given[i];
         return field(GL_R32F, given.empty() ? std::vector<float>() : strength);
     }
@@ -139,9 +139,9 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     auto define = [&](bool holds, const std::string& what) {
         if (holds) text += "#define " + what + "\n";
     };
-    const auto* stencil = placement.grid ? &body.stencil() : nullptr;
+    const GridSprings* stencil = placement.grid ? body.grid() : nullptr;
     const Pass pass = make_pass(body, simulation);
-    define(true, fmt::format("LINKS {}", pass.links));
+    define(true, fmt::format("LINKS {}", stencil ? pass.links : table(body).width));
     define(!stencil, "TABLE");
     define(stencil && stencil->in_quarters(), "QUARTERS");
     define(stencil && !stencil->strength.empty(), "STRENGTH");

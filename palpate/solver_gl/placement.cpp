@@ -12,43 +12,43 @@ constexpr std::size_t slots_for_a_node = 6;  // beyond, springs that are written
 struct Box {
     ivec3 low = ivec3(0), dims = ivec3(0);
 };
-Box box_of(const Stencil& stencil) {
-    if (stencil.at.empty()) return {};
-    ivec3 low = stencil.at[0], high = low;
-    for (ivec3 p : stencil.at) low = glm::min(low, p), high = glm::max(high, p);
+Box box_of(std::span<const ivec3> places) {
+    if (places.empty()) return {};
+    ivec3 low = places[0], high = low;
+    for (ivec3 p : places) low = glm::min(low, p), high = glm::max(high, p);
     return {low, high - low + 1};
 }
 
 }  // namespace
 
 Placement::Placement(const Body& body) {
-    const auto* stencil = std::get_if<Stencil>(&body.springs);
-    const Box box = stencil ? box_of(*stencil) : Box{};
+    const GridSprings* springs = body.terms.size() == 1 ? body.grid() : nullptr;
+    const Box box = springs ? box_of(body.at) : Box{};
     const double volume = double(box.dims.x) * box.dims.y * box.dims.z;
-    grid = stencil && body.count() > 0 && volume <= double(slots_for_a_node * body.count()) &&
-           !(stencil->in_quarters() && stencil->links.size() > most_links);
+    grid = springs && body.count() > 0 && volume <= double(slots_for_a_node * body.count()) &&
+           !(springs->in_quarters() && springs->links.size() > most_links);
     if (!grid) {
         slots = int(body.count());
         slot.resize(body.count());
         std::iota(slot.begin(), slot.end(), 0);
     } else {
-        lay_grid(*stencil);
+        lay_grid(body);
     }
     for (std::size_t i = 0; i < body.count(); ++i)
         if (body.area[i] > 0) rim.push_back(slot[i]);
 }
 
-void Placement::lay_grid(const Stencil& stencil) {
-    const Box box = box_of(stencil);
+void Placement::lay_grid(const Body& body) {
+    const Box box = box_of(body.at);
     auto number = [&](ivec3 p) { return (p.z * box.dims.y + p.y) * box.dims.x + p.x; };
     int room = 0;
-    for (const Link& link : stencil.links) {
+    for (const Link& link : body.grid()->links) {
         offsets.push_back(number(link.offset));
         room = std::max(room, std::abs(offsets.back()));
     }
     dims = box.dims;
     first = room;
-    for (ivec3 p : stencil.at) slot.push_back(first + number(p - box.low));
+    for (ivec3 p : body.at) slot.push_back(first + number(p - box.low));
     slots = room + box.dims.x * box.dims.y * box.dims.z + room;
 }
 

@@ -14,7 +14,7 @@ std::string vector(ivec3 v) { return fmt::format("ivec3({}, {}, {})", v.x, v.y, 
 Tiles tiles(const Body& body, const Placement& placement) {
     Tiles tiles;
     tiles.size = placement.dims.z == 1 ? ivec3(16, 16, 1) : ivec3(8, 8, 4);
-    for (const Link& link : body.stencil().links) tiles.reach = glm::max(tiles.reach, glm::abs(link.offset));
+    for (const Link& link : body.grid()->links) tiles.reach = glm::max(tiles.reach, glm::abs(link.offset));
     tiles.groups = (placement.dims + tiles.size - 1) / tiles.size;
     return tiles;
 }
@@ -22,7 +22,7 @@ Tiles tiles(const Body& body, const Placement& placement) {
 std::string text(const Tiles& tiles, const Body& body, const Placement& placement) {
     const ivec3 wide = tiles.size + 2 * tiles.reach;
     std::string offsets;
-    for (const Link& link : body.stencil().links)
+    for (const Link& link : body.grid()->links)
         offsets += fmt::format("{}{}", offsets.empty() ? "" : ", ",
                                (link.offset.z * wide.y + link.offset.y) * wide.x + link.offset.x);
     return fmt::format(

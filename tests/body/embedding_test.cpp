@@ -405,7 +405,7 @@ TEST(Embedding, CollapsedNodesGiveNoNaN) {
 // Nodes that lie in one place, or a face without an area, at rest already.
 TEST(Embedding, ABodyCollapsedAtRestGivesNoNaN) {
     const std::vector<vec3> positions = {{0, 0, 0}, {0.1f, 0, 0}, {0.2f, 0, 0}, {0.2f, 0, 0}};
-    const NetSpring spring{0, 1, 100};
+    const Spring spring{0, 1, 100};
     const std::vector<uvec3> faces = {{0, 1, 2}, {1, 2, 3}, {2, 3, 2}};
     const Body body = net(positions, std::vector<float>(4, 1), {&spring, 1}, faces);
     Mesh mesh = ellipsoid({0.1f, 0.1f, 0.1f}, 10);
@@ -459,7 +459,7 @@ TEST(Embedding, ApproximateNormalsPointOutward) {
     const Body body = lattice({5, 5, 5}, 0.01f, tissue);
     const std::vector<vec3> normals = approximate_normals(body, body.positions);
     for (std::size_t i = 0; i < body.count(); ++i) {
-        const vec3 out = vec3(body.stencil().at[i]) - 2.0f;
+        const vec3 out = vec3(body.at[i]) - 2.0f;
         const bool inside = glm::all(glm::lessThan(glm::abs(out), vec3(1.5f)));
         if (inside)
             EXPECT_LE(glm::length(normals[i]), 1e-5);
@@ -480,7 +480,7 @@ TEST(Embedding, TheNearestFaceIsFound) {
     for (unsigned i = 0; i < positions.size(); i += 3) faces.emplace_back(i, i + 1, i + 2);
     Body body = net(positions, std::vector<float>(positions.size(), 1), {}, faces);
     body.fan = 1;  // a sheet: both sides alike. Nothing else looks at it here
-    body.springs = Table{1, std::vector<Tie>(positions.size())};
+    body.rings.assign(positions.size(), -1);
     Mesh points;
     for (int i = 0; i < 300; ++i)
         points.positions.push_back(vec3(any(random), any(random), any(random)) * (i % 3 == 0 ? 30.0f : 1.5f));

@@ -61,8 +61,8 @@ TEST(Lattice, SharesAreThoseOfTheCellsAround) {
     auto quarters = [&](ivec3 at, ivec3 offset) {
         for (std::size_t i = 0; i < body.count(); ++i)
             for (std::size_t l = 0; l < 18; ++l)
-                if (body.stencil().at[i] == at && body.stencil().links[l].offset == offset)
-                    return body.stencil().quarters(i, l);
+                if (body.at[i] == at && body.grid()->links[l].offset == offset)
+                    return body.grid()->quarters(i, l);
         return -1;
     };
     EXPECT_EQ(quarters({1, 1, 1}, {1, 0, 0}), 4);   // inside: four of four cells
@@ -78,14 +78,14 @@ TEST(Lattice, OneNodeThickPartsKeepTheirSprings) {
     EXPECT_EQ(sheet.cells.size(), 0u);
     for (std::size_t i = 0; i < sheet.count(); ++i)
         for (std::size_t l = 0; l < 18; ++l)
-            if (const int q = sheet.stencil().quarters(i, l)) EXPECT_EQ(q, l < 6 ? 1 : 2);
+            if (const int q = sheet.grid()->quarters(i, l)) EXPECT_EQ(q, l < 6 ? 1 : 2);
     EXPECT_NEAR(1 / sheet.inverse_mass[0], 1000.0 / 8, 1e-2);
 }
 
 TEST(Lattice, StiffnessFromTheModulus) {
     const Body body = lattice({3, 3, 3}, 0.02f, tissue);
-    EXPECT_NEAR(body.stencil().links[0].stiffness, 0.4 * 5000 * 0.02, 1e-4);
-    EXPECT_NEAR(body.stencil().links[6].rest, 0.02 * std::sqrt(2), 1e-8);
+    EXPECT_NEAR(body.grid()->links[0].stiffness, 0.4 * 5000 * 0.02, 1e-4);
+    EXPECT_NEAR(body.grid()->links[6].rest, 0.02 * std::sqrt(2), 1e-8);
 }
 
 // A homogeneous strain leaves no force on any node but those at the ends, at every thickness: the shares make
@@ -102,7 +102,7 @@ TEST(Lattice, AStretchedBarIsInBalanceAndShowsItsModulus) {
         const std::vector<dvec3> forces = spring_forces(body, p);
         double end = 0, largest_inside = 0;
         for (std::size_t i = 0; i < body.count(); ++i) {
-            const int x = body.stencil().at[i].x;
+            const int x = body.at[i].x;
             if (x == 0) end += forces[i].x;
             if (x > 0 && x < length - 1) largest_inside = std::max(largest_inside, glm::length(forces[i]));
         }

@@ -99,7 +99,7 @@ TEST(Follows, OnASheetOf18NodesInterpolatedBeatsConstant) {
 // as the paper warns (section 3.5).
 Carrier quilt_on_a_flat_net() {
     Carrier c = quilt_on_a_cloth();
-    std::vector<NetSpring> springs;
+    std::vector<Spring> springs;
     for (uvec2 ends : spring_ends(c.body)) springs.push_back({int(ends.x), int(ends.y), 100});
     std::vector<uvec3> faces;
     for (const auto& f : c.body.faces) faces.emplace_back(f[0], f[1], f[2]);

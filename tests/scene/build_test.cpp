@@ -167,7 +167,7 @@ link_damping = 0.002
 )")
                           .models[0]
                           .body;
-    EXPECT_EQ(body.stencil().links.size(), 32u);
+    EXPECT_EQ(body.grid()->links.size(), 32u);
     EXPECT_EQ(body.link_damping, 0.002f);
     EXPECT_NEAR(mass(body), 0.1, 1e-6);
 }
@@ -300,8 +300,8 @@ TEST(Build, MapsHangOnTheNodesOfTheMendedSolid) {
 
 std::vector<int> strengthened(const Body& body, float factor) {
     std::vector<int> nodes;
-    for (std::size_t i = 0; i < body.stencil().strength.size(); ++i)
-        if (std::abs(body.stencil().strength[i] / factor - 1) < 1e-5f) nodes.push_back(int(i));
+    for (std::size_t i = 0; i < body.grid()->strength.size(); ++i)
+        if (std::abs(body.grid()->strength[i] / factor - 1) < 1e-5f) nodes.push_back(int(i));
     return nodes;
 }
 
@@ -351,7 +351,7 @@ TEST(Build, LabelsTurnAndMoveWithTheBody) {
         EXPECT_EQ(nodes.size(), 8u);
         for (int node : nodes)
             for (int axis = 0; axis < 3; ++axis) {
-                const int at = body.stencil().at[std::size_t(node)][axis];
+                const int at = body.at[std::size_t(node)][axis];
                 EXPECT_TRUE(at == 2 || at == 3) << at;
             }
     }
@@ -439,7 +439,7 @@ void expect_same(const Models& a, const Models& b, const std::string& after) {
         const Body &one = a.models[m].body, &other = b.models[m].body;
         EXPECT_EQ(one.positions, other.positions) << after;
         EXPECT_EQ(one.inverse_mass, other.inverse_mass) << after;
-        EXPECT_TRUE(one.springs == other.springs) << after;
+        EXPECT_TRUE(one.terms == other.terms) << after;
         EXPECT_EQ(one.area, other.area) << after;
         EXPECT_EQ(one.cover, other.cover) << after;
         EXPECT_EQ(one.damping, other.damping) << after;

@@ -19,7 +19,7 @@ Body battered(Body body, unsigned seed) {
     std::mt19937 random(seed);
     auto chance = [&](double p) { return std::bernoulli_distribution(p)(random); };
     for (float& inverse : body.inverse_mass) inverse *= chance(0.1) ? 0.0f : chance(0.3) ? 0.5f : 1.0f;
-    if (auto* stencil = std::get_if<Stencil>(&body.springs)) {
+    if (GridSprings* stencil = body.grid()) {
         const Table springs = table(body);
         for (std::size_t i = 0; i < body.count(); ++i)
             for (std::size_t l = 0; l < stencil->links.size(); ++l)
@@ -45,13 +45,21 @@ Body with_strength(Body body, unsigned seed) {
 }
 
 Body with_whole_links(Body body) {
-    Stencil& stencil = std::get<Stencil>(body.springs);
+    GridSprings& stencil = *body.grid();
     for (std::size_t i = 0; i < body.count(); ++i)
         for (std::size_t l = 0; l < stencil.links.size(); ++l)
             if (stencil.quarters(i, l) > 0) {
                 stencil.shares[i] &= ~(std::uint64_t(7) << 3 * l);
                 stencil.shares[i] |= std::uint64_t(4) << 3 * l;
             }
+    return body;
+}
+
+// Two of its corners tied together, and a rope along an edge that two springs share.
+Body stitched(Body body) {
+    const int last = int(body.count()) - 1;
+    body.terms.push_back(
+        ListedSprings{{{0, last, 0.4f, 0.05f}, {1, 2, 2, 0.01f}, {2, 3, 3, 0.012f}, {1, 2, 1, 0.01f}}});
     return body;
 }
 
@@ -72,7 +80,7 @@ std::vector<NamedBody> odd_bodies() {
     const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = tissue});
     std::vector<vec3> corners = {
         {0, 0, 0}, {0.03f, 0, 0}, {0, 0.03f, 0}, {0, 0, 0.03f}, {0.02f, 0.02f, 0.02f}};
-    std::vector<NetSpring> edges;
+    std::vector<Spring> edges;
     for (int a = 0; a < 5; ++a)
         for (int b = 0; b < a; ++b) edges.push_back({a, b, 20});
     Body net_body = net(corners, std::vector<float>{0.01f, 0.01f, 0.01f, 0.02f, 0.0f}, edges);
@@ -83,6 +91,7 @@ std::vector<NamedBody> odd_bodies() {
         {"box with whole links", with_whole_links(lattice({8, 9, 5}, 0.01f, tissue))},
         {"battered box", battered(lattice({10, 6, 7}, 0.01f, tissue), 1)},
         {"box with strength", with_strength(lattice({7, 6, 5}, 0.01f, tissue), 2)},
+        {"stitched box", stitched(lattice({5, 6, 4}, 0.01f, tissue))},
         {"organ", organ},
         {"battered organ", battered(organ, 3)},
         {"organ with strength", with_strength(organ, 4)},

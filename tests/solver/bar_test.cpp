@@ -37,13 +37,13 @@ Pulled pull(int thick, Links links) {
     const int middle = length / 2;
     double force = 0, left = 0, right = 0;
     for (std::size_t i = 0; i < body.count(); ++i) {
-        const int x = body.stencil().at[i].x;
+        const int x = body.at[i].x;
         if (x == middle - 2) left += p[i].x / (thick * thick);
         if (x == middle + 2) right += p[i].x / (thick * thick);
         if (x != middle) continue;
         for (std::size_t l = 0; l < 18; ++l) {
             const Tie& tie = springs.of(i)[l];
-            if (tie.to < 0 || body.stencil().links[l].offset.x != 1) continue;
+            if (tie.to < 0 || body.grid()->links[l].offset.x != 1) continue;
             const dvec3 along = p[std::size_t(tie.to)] - p[i];
             const double d = glm::length(along);
             force += double(tie.share) * tie.stiffness * (d - tie.rest) * along.x / d;

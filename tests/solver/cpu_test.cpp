@@ -250,8 +250,8 @@ int covered(const Layout& layout) {
 }
 
 void expect_sound(const Body& body, int lanes) {
-    const Stencil& stencil = body.stencil();
-    const Layout layout(stencil, lanes);
+    const GridSprings& stencil = *body.grid();
+    const Layout layout(body, lanes);
     std::set<int> taken(layout.slot.begin(), layout.slot.end());
     EXPECT_EQ(taken.size(), body.count());  // each its own
     EXPECT_EQ(covered(layout), layout.slots);
@@ -294,10 +294,10 @@ TEST(Layout, EveryLinkLeadsToItsNeighbour) {
 }
 
 TEST(Layout, ABoxHasNoGapsAndRowsAreTheLongest) {
-    EXPECT_EQ(Layout(lattice({27, 27, 27}, 0.01f, tissue).stencil(), 8).slots, 27 * 27 * 27 + 5);
+    EXPECT_EQ(Layout(lattice({27, 27, 27}, 0.01f, tissue), 8).slots, 27 * 27 * 27 + 5);
     // A rod along z, of rows that are 40 long there and 3 long along x.
     Body rod = lattice(ellipsoid({0.012f, 0.012f, 0.2f}, 24), {.spacing = 0.01f, .material = tissue});
-    const Layout layout(rod.stencil(), 8);
+    const Layout layout(rod, 8);
     EXPECT_LE(layout.slots, 1.5 * double(rod.count()));
 }
 

@@ -38,7 +38,7 @@ TEST(Cloth, OpenAndClosedRingsFaceTheSameWay) {
 
 std::vector<std::pair<std::string, Body>> bodies() {
     const std::vector<vec3> tetrahedron = {{0, 0, 0}, {0.03f, 0, 0}, {0, 0.03f, 0}, {0, 0, 0.03f}};
-    std::vector<NetSpring> edges;
+    std::vector<Spring> edges;
     for (int a = 0; a < 4; ++a)
         for (int b = 0; b < a; ++b) edges.push_back({a, b, 20});
     Body net_body = net(tetrahedron, std::vector<float>{0.01f, 0.01f, 0.01f, 0.02f}, edges);

@@ -175,10 +175,10 @@ TEST_P(Motion, OnAPlaneAtRestTheGroundCarriesTheWeight) {
     const std::vector<dvec3> forces = spring_forces(body, solver->state().positions);
     double up = 0;  // the springs press the lowest layer down by the weight of all that stands on it
     for (std::size_t i = 0; i < body.count(); ++i)
-        if (body.stencil().at[i].y == 0) up -= forces[i].y;
+        if (body.at[i].y == 0) up -= forces[i].y;
     double carried = 0;
     for (std::size_t i = 0; i < body.count(); ++i)
-        if (body.stencil().at[i].y > 0) carried += 9.81 / double(body.inverse_mass[i]);
+        if (body.at[i].y > 0) carried += 9.81 / double(body.inverse_mass[i]);
     EXPECT_LE(std::abs(up / carried - 1), 0.01);
 }
 

@@ -98,9 +98,8 @@ TEST_P(Refuses, WhatCannotActOnABodyOrBePutBack) {
 
 TEST(Refusal, OfBodiesThatDoNotHold) {
     const Body sound = lattice({4, 3, 5}, 0.01f, tissue), sheet = cloth({5, 4}, 0.01f, {.density = 1});
-    Body written = sound;
-    written.springs = table(sound);
-    written.cells.clear();
+    const Body written = without_grid(sound);
+    auto listed = [](Body& b) -> std::vector<Spring>& { return std::get<ListedSprings>(b.terms[0]).springs; };
     const auto refused = [&](const std::string& word, Body body, auto spoil) {
         spoil(body);
         for (Backend backend : {Backend::reference, Backend::cpu, Backend::compute})
@@ -115,18 +114,20 @@ TEST(Refusal, OfBodiesThatDoNotHold) {
     refused("spacing", sound, [](Body& b) { b.spacing = 0; });
     refused("damping", sound, [](Body& b) { b.damping = -1; });
     refused("damping", sound, [](Body& b) { b.link_damping = none; });
-    refused("a stencil", sound, [](Body& b) { std::get<Stencil>(b.springs).at.pop_back(); });
-    refused("a stencil", sound, [](Body& b) { std::get<Stencil>(b.springs).shares.clear(); });
-    refused("a stencil", sound, [](Body& b) { std::get<Stencil>(b.springs).strength = {1, 2}; });
-    refused("two nodes at one place", sound, [](Body& b) { std::get<Stencil>(b.springs).at[1] = ivec3(0); });
-    refused("too large a box", sound, [](Body& b) { std::get<Stencil>(b.springs).at[1] = ivec3(1 << 30); });
-    refused("a link", sound, [](Body& b) { std::get<Stencil>(b.springs).links[2].stiffness = none; });
-    refused("32 links", sound, [](Body& b) {
-        std::get<Stencil>(b.springs).links.resize(33, {ivec3(1), 1, 1});
-    });
-    refused("a table", written, [](Body& b) { std::get<Table>(b.springs).ties.pop_back(); });
-    refused("a spring to a node", written, [](Body& b) { std::get<Table>(b.springs).ties[0].to = 60; });
-    refused("a spring to a node", written, [](Body& b) { std::get<Table>(b.springs).ties[0].to = -2; });
+    refused("places in the grid", sound, [](Body& b) { b.at.pop_back(); });
+    refused("without one", sound, [](Body& b) { b.at.clear(); });
+    refused("shares", sound, [](Body& b) { b.grid()->shares.clear(); });
+    refused("strengths", sound, [](Body& b) { b.grid()->strength = {1, 2}; });
+    refused("not its first term", sound, [](Body& b) { b.terms.push_back(b.terms[0]); });
+    refused("two nodes at one place", sound, [](Body& b) { b.at[1] = ivec3(0); });
+    refused("too large a box", sound, [](Body& b) { b.at[1] = ivec3(1 << 30); });
+    refused("a link", sound, [](Body& b) { b.grid()->links[2].stiffness = none; });
+    refused("32 links", sound, [](Body& b) { b.grid()->links.resize(33, {ivec3(1), 1, 1}); });
+    refused("a spring to a node", written, [&](Body& b) { listed(b)[0].a = 60; });
+    refused("a spring to a node", written, [&](Body& b) { listed(b)[0].b = -1; });
+    refused("a spring to a node", written, [&](Body& b) { listed(b)[0].rest = none; });
+    refused("rings", without_grid(sheet), [](Body& b) { b.rings.pop_back(); });
+    refused("a ring", without_grid(sheet), [](Body& b) { b.rings[3] = 20; });
     refused("cells without a grid", written, [&](Body& b) { b.cells = sound.cells; });
     refused("a fan", sheet, [](Body& b) { b.fan = 13; });
     refused("a fan", sheet, [](Body& b) { b.fan = -1; });

@@ -120,7 +120,7 @@ double elastic(const Body& body, const std::vector<dvec3>& positions) {
 template <class Move>
 std::vector<dvec3> moved(const Body& body, Move move) {
     std::vector<dvec3> positions;
-    for (ivec3 at : body.stencil().at) positions.push_back(move(at));
+    for (ivec3 at : body.at) positions.push_back(move(at));
     return positions;
 }
 
@@ -194,7 +194,7 @@ TEST(Region, AHardHalfStretchesLess) {
     const State state = solver->state();
     for (std::size_t i = 0; i < body.count(); ++i)
         for (int k = 0; k < 3; ++k)
-            if (body.stencil().at[i].x == 4 + 12 * k) at[k] += state.positions[i].x / 25;
+            if (body.at[i].x == 4 + 12 * k) at[k] += state.positions[i].x / 25;
     const double hard = (at[1] - at[0]) / 0.12 - 1, soft = (at[2] - at[1]) / 0.12 - 1;
     // The middle of the bar lies in its hard half by half a spacing; the softer link leads to x = 16.
     EXPECT_LE(std::abs(soft / hard / 4 - 1), 0.08) << soft << ' ' << hard;
@@ -216,7 +216,7 @@ TEST(Region, OfATableToo) {
 TEST(Net, TheSameSpringsInATableMoveAlike) {
     Body grid = cloth({6, 5}, 0.02f, {.stiffness = {90, 40, 15}, .density = 0.3f, .damping = 1});
     const Table springs = table(grid);
-    std::vector<NetSpring> ties;
+    std::vector<Spring> ties;
     std::vector<float> masses;
     for (std::size_t i = 0; i < grid.count(); ++i) {
         masses.push_back(1 / grid.inverse_mass[i]);
@@ -238,8 +238,8 @@ TEST(Net, TheSameSpringsInATableMoveAlike) {
 TEST(Net, RefusesWhatNamesNoNode) {
     const std::vector<vec3> positions(2, vec3(0));
     const std::vector<float> masses(2, 1.0f);
-    EXPECT_THROW(net(positions, masses, std::vector<NetSpring>{{0, 2, 1}}), Error);
-    EXPECT_THROW(net(positions, masses, std::vector<NetSpring>{{-1, 1, 1}}), Error);
+    EXPECT_THROW(net(positions, masses, std::vector<Spring>{{0, 2, 1}}), Error);
+    EXPECT_THROW(net(positions, masses, std::vector<Spring>{{-1, 1, 1}}), Error);
     EXPECT_THROW(net(positions, masses, {}, std::vector<uvec3>{{0, 1, 7}}), Error);
 }
 
@@ -325,7 +325,7 @@ TEST(Solver, RefusesWhatIsNotFinite) {
 // A spring without a rest length is no torn one.
 TEST(Solver, ASpringOfNoLengthHolds) {
     const std::vector<vec3> both(2, vec3(0));
-    Body body = net(both, std::vector<float>{0, 1}, std::vector<NetSpring>{{0, 1, 100}});
+    Body body = net(both, std::vector<float>{0, 1}, std::vector<Spring>{{0, 1, 100}});
     body.spacing = 0.1f;
     body.damping = 5;
     auto solver = make_solver(body, {});

@@ -10,12 +10,12 @@
 namespace palpate::cpu {
 namespace {
 
-bool follows(const Stencil& stencil, std::span<const ivec3> offsets) {
+bool follows(const GridSprings& stencil, std::span<const ivec3> offsets) {
     return std::equal(stencil.links.begin(), stencil.links.end(), offsets.begin(), offsets.end(),
                       [](const Link& link, ivec3 offset) { return link.offset == offset; });
 }
 
-bool whole(const Stencil& stencil) {
+bool whole(const GridSprings& stencil) {
     for (std::size_t i = 0; i < stencil.shares.size(); ++i)
         for (std::size_t l = 0; l < stencil.links.size(); ++l)
             if (stencil.quarters(i, l) % 4 != 0) return false;
@@ -31,8 +31,8 @@ float furthest(const Body& body) {
 
 // Each link at rest, if all nodes that have it agree on it; else nothing.
 std::vector<vec3> links_at_rest(const Body& body) {
-    const Stencil& stencil = body.stencil();
-    const GridIndex number(stencil.at);
+    const GridSprings& stencil = *body.grid();
+    const GridIndex number(body.at);
     // Positions that were turned and moved are rounded more than once.
     const float hair = 1e-5f * body.spacing + 10 * std::numeric_limits<float>::epsilon() * furthest(body);
     std::vector<vec3> links;
@@ -40,7 +40,7 @@ std::vector<vec3> links_at_rest(const Body& body) {
         dvec3 sum(0);
         std::vector<vec3> seen;
         for (std::size_t i = 0; i < body.count(); ++i) {
-            const int to = number.at(stencil.at[i] + stencil.links[l].offset);
+            const int to = number.at(body.at[i] + stencil.links[l].offset);
             if (to >= 0) seen.push_back(body.positions[std::size_t(to)] - body.positions[i]);
         }
         for (vec3 v : seen) sum += dvec3(v);
@@ -55,7 +55,7 @@ std::vector<vec3> links_at_rest(const Body& body) {
 
 bool along_axes(const Body& body, const std::vector<vec3>& links) {
     for (std::size_t l = 0; l < links.size(); ++l)
-        if (!(glm::distance(links[l], body.spacing * vec3(body.stencil().links[l].offset)) <=
+        if (!(glm::distance(links[l], body.spacing * vec3(body.grid()->links[l].offset)) <=
               1e-4f * body.spacing))
             return false;
     return true;
@@ -63,7 +63,7 @@ bool along_axes(const Body& body, const std::vector<vec3>& links) {
 
 // The kernel for a body's springs, and for those of a grid its links at rest.
 std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
-    const auto* stencil = std::get_if<Stencil>(&body.springs);
+    const GridSprings* stencil = body.terms.size() == 1 ? body.grid() : nullptr;
     if (!stencil || body.count() == 0) return {Springs::table, {}};
     std::vector<vec3> links = links_at_rest(body);
     if (links.empty()) return {Springs::table, {}};
@@ -87,7 +87,7 @@ bool in_quarters(Springs springs) {
 
 Layout layout_for(const Body& body, Springs springs, int lanes) {
     return springs == Springs::table ? Layout(order_for(table(body), body.count(), body.fan), lanes)
-                                     : Layout(body.stencil(), lanes);
+                                     : Layout(body, lanes);
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
 }
 
 void LaidBody::lay_grid(const Body& body) {
-    const Stencil& stencil = body.stencil();
+    const GridSprings& stencil = *body.grid();
     const bool quarters = in_quarters(view_.springs);
     const std::size_t per_word = quarters ? 10 : 32;
     for (int w = 0; w < (quarters ? 2 : 1); ++w) {

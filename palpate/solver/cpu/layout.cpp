@@ -54,9 +54,9 @@ bool fills_its_box(std::span<const ivec3> places) {
 
 class Laying {
  public:
-    Laying(const Stencil& stencil, int lanes, Layout& layout)
-        : stencil_(stencil), lanes_(lanes), layout_(layout) {
-        box_ = fills_its_box(stencil.at);
+    Laying(const Body& body, int lanes, Layout& layout)
+        : body_(body), stencil_(*body.grid()), lanes_(lanes), layout_(layout) {
+        box_ = fills_its_box(body.at);
         choose_axis();
         give_slots();
         if (box_)
@@ -70,7 +70,7 @@ class Laying {
     void choose_axis() {
         std::size_t least = 0;
         for (int axis = 0; axis < (box_ ? 1 : 3); ++axis) {
-            std::vector<ivec3> places = turned(stencil_.at, axis);
+            std::vector<ivec3> places = turned(body_.at, axis);
             std::vector<Segment> rows = segments(places, lanes_);
             std::size_t registers = 0;
             for (const Segment& row : rows) registers += std::size_t(rounded_up(row.length, lanes_) / lanes_);
@@ -135,7 +135,7 @@ class Laying {
         for (std::size_t l = 0; l < offsets.size(); ++l)
             for (int node : from) {
                 if (stencil_.quarters(std::size_t(node), l) == 0) continue;
-                const int to = number_.at(stencil_.at[std::size_t(node)] + stencil_.links[l].offset);
+                const int to = number_.at(body_.at[std::size_t(node)] + stencil_.links[l].offset);
                 offsets[l] = layout_.slot[std::size_t(to)] - layout_.slot[std::size_t(node)];
                 break;  // the others' are as far: no gap within a segment is as wide as a register
             }
@@ -151,10 +151,11 @@ class Laying {
         return {begin, end};
     }
 
-    const Stencil& stencil_;
+    const Body& body_;
+    const GridSprings& stencil_;
     const int lanes_;
     Layout& layout_;
-    const GridIndex number_{stencil_.at};
+    const GridIndex number_{body_.at};
     bool box_ = false;
     std::vector<ivec3> places_;
     std::vector<Segment> segments_;
@@ -162,8 +163,8 @@ class Laying {
 
 }  // namespace
 
-Layout::Layout(const Stencil& stencil, int lanes) {
-    Laying(stencil, lanes, *this);
+Layout::Layout(const Body& body, int lanes) {
+    Laying(body, lanes, *this);
     make_blocks();
 }
 

@@ -38,7 +38,7 @@ struct Layout {
     /// have their neighbours at the same distance. Of other shapes the rows along that axis are kept that
     /// fill their registers best, each cut where a register or more would be empty: memory goes with the
     /// nodes, not the box.
-    Layout(const Stencil& stencil, int lanes);
+    Layout(const Body& body, int lanes);
 
     /// A body whose springs are written out: its nodes in that order.
     Layout(std::span<const int> order, int lanes);

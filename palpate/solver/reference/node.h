@@ -69,7 +69,7 @@ struct SeeingNode {
 #define FN [[gnu::always_inline]]  // GCC leaves the longer ones out, which costs half the speed
 #define ASIDE
 #define UNROLL
-#define LINKS pass.links
+#define LINKS world.springs.width
 #include "palpate/solver/node.inl"
 #include "palpate/solver/obstacles.inl"
 #undef LINKS
