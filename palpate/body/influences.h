@@ -23,13 +23,14 @@ inline float pressure_per_metre(const Press& press) {
     return press.stiffness / (3.14159265f * press.radius * press.radius);
 }
 
-/// A spring without a rest length that pulls one node towards a moving point: a mouse, or a hand, that drags
-/// it.
-struct Drag {
+/// What somebody does to one node: a force, and a spring of no length that draws it towards a moving point,
+/// as a mouse or a hand does that drags it. Any number of them may act on a node.
+struct NodePush {
     int node = 0;
-    vec3 to = vec3(0);        // m, at the start of the call
+    vec3 to = vec3(0);        // m, at the start of the call: where the spring draws it
     vec3 velocity = vec3(0);  // m/s, of that point
-    float stiffness = 50;     // N/m
+    float stiffness = 0;      // N/m, of the spring
+    vec3 force = vec3(0);     // N
 };
 
 /// Prescribed motion: nodes of inverse mass 0 that go evenly to these places by the end of the call, whatever
@@ -39,13 +40,11 @@ struct Move {
     std::span<const vec3> to;  // m, one a node
 };
 
-inline constexpr std::size_t most_presses = 8, most_drags = 8;  // on a body at once
-
 /// What acts on a body from outside during one call of Solver::step, besides gravity. Solver::step says what
 /// it refuses.
 struct Influences {
     std::span<const Press> presses = {};
-    std::span<const Drag> drags = {};
+    std::span<const NodePush> pushes = {};
     std::span<const Move> moves = {};
     std::span<const Motion> colliders =
         {};               // one for each of Simulation::colliders; or none, and all stand still

@@ -13,7 +13,7 @@ namespace palpate::gl {
 class Visit {
  public:
     /// How many texture units and bindings of storage buffers are kept, from 0 on: as many as are used here.
-    static constexpr unsigned units = 16, buffers = 8;
+    static constexpr unsigned units = 18, buffers = 8;
 
     Visit();
     ~Visit();

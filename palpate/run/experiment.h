@@ -49,8 +49,8 @@ class Experiment {
     /// Another one with some more changes, that goes on from where this one is; hands may take hold of both.
     std::unique_ptr<Experiment> beside(const std::vector<Change>& more) const;
 
-    /// Whether bodies can take that beside the scene's own tools: nodes that are there, no more at once than
-    /// fit, and not out of all proportion to what they are made of.
+    /// Whether bodies can take that beside the scene's own tools: nodes that are there, and
+    /// forces that are not out of all proportion to what they are made of.
     bool takes(const Hands& hands) const;
 
     /// Why it does not go on, in one line; empty while it does.

@@ -6,12 +6,12 @@
 
 namespace palpate {
 
-std::optional<Drag> Grip::drag(double time, double frame, const std::vector<Model>& models,
-                               const World& world) {
+std::optional<NodePush> Grip::drag(double time, double frame, const std::vector<Model>& models,
+                                   const World& world) {
     if (!within(recipe_.path, time)) return std::nullopt;
     if (node_ < 0) take_hold(models, world);
     const vec3 here = centre(time), there = centre(time + frame);
-    return Drag{node_, here, (there - here) / float(frame), recipe_.stiffness};
+    return NodePush{node_, here, (there - here) / float(frame), recipe_.stiffness};
 }
 
 void Grip::take_hold(const std::vector<Model>& models, const World& world) {

@@ -13,9 +13,10 @@ class Grip {
  public:
     explicit Grip(const ToolRecipe& recipe) : recipe_(recipe) {}
 
-    /// The drag for the frame from `time` on, or none while the tool is away. At the path's first time it
+    /// The push for the frame from `time` on, or none while the tool is away. At the path's first time it
     /// takes hold of the nearest node that can move. Throws Error if there is none.
-    std::optional<Drag> drag(double time, double frame, const std::vector<Model>& models, const World& world);
+    std::optional<NodePush> drag(double time, double frame, const std::vector<Model>& models,
+                                 const World& world);
 
     /// The number of the body that it has hold of.
     std::size_t body() const { return body_; }

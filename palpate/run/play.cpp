@@ -53,8 +53,8 @@ std::vector<vec3> places(const MovedNodes& moved, const Path& path, const Body& 
 struct Play::Acting {
     std::vector<Press> presses;
     std::vector<std::size_t> tool_of_press;
-    std::vector<BodyDrag> drags;
-    std::vector<std::size_t> tool_of_drag;
+    std::vector<BodyPush> pushes;
+    std::vector<std::size_t> tool_of_push;
     std::vector<std::vector<vec3>> places;  // that the moves lead to
     std::vector<BodyMove> moves;
     std::vector<Motion> colliders;
@@ -222,12 +222,12 @@ Play::Acting Play::acting(double time, double seconds, const Hands& hands) {
         } else if (auto* grip = std::get_if<Grip>(&handles_[t])) {
             const auto drag = grip->drag(time, seconds, made_.models, world_);
             if (!drag) continue;
-            on.drags.push_back({grip->body(), *drag});
-            on.tool_of_drag.push_back(t);
+            on.pushes.push_back({grip->body(), *drag});
+            on.tool_of_push.push_back(t);
         }
     }
     on.presses.insert(on.presses.end(), hands.presses.begin(), hands.presses.end());
-    on.drags.insert(on.drags.end(), hands.pulls.begin(), hands.pulls.end());
+    on.pushes.insert(on.pushes.end(), hands.pulls.begin(), hands.pulls.end());
     for (std::size_t i = 0; i < made_.moves.size(); ++i) {
         const MovedNodes& moved = made_.moves[i];
         on.places.push_back(
@@ -242,7 +242,7 @@ Play::Acting Play::acting(double time, double seconds, const Hands& hands) {
 
 bool Play::step(double seconds, const Acting& on) {
     WorldStats stats = world_.step(seconds, {.presses = on.presses,
-                                             .drags = on.drags,
+                                             .pushes = on.pushes,
                                              .moves = on.moves,
                                              .colliders = on.colliders,
                                              .wind = on.wind});
@@ -268,23 +268,23 @@ void Play::record(const Acting& on, double time, double seconds) {
     std::vector<dvec3> impulses(handles_.size(), dvec3(0));
     tools_.assign(handles_.size(), std::nullopt);
     // Sums over time are impulses; what hands feel is a mean force.
-    const std::size_t tips = on.tool_of_press.size(), grips = on.tool_of_drag.size();
+    const std::size_t tips = on.tool_of_press.size(), grips = on.tool_of_push.size();
     pushes_ = {};
     for (std::size_t p = 0; p < on.presses.size(); ++p)
         if (p < tips)
             impulses[on.tool_of_press[p]] += stats_.reactions[p];
         else
             pushes_.presses.push_back(stats_.reactions[p] / seconds);
-    for (std::size_t d = 0; d < on.drags.size(); ++d)
+    for (std::size_t d = 0; d < on.pushes.size(); ++d)
         if (d < grips)
-            impulses[on.tool_of_drag[d]] += stats_.pulls[d];
+            impulses[on.tool_of_push[d]] += stats_.pushes[d];
         else
-            pushes_.pulls.push_back(stats_.pulls[d] / seconds);
+            pushes_.pulls.push_back(stats_.pushes[d] / seconds);
     for (std::size_t t : on.tool_of_press) tools_[t] = {std::get<Tip>(handles_[t]).centre(time), {}};
     for (std::size_t d = 0; d < grips; ++d) {
-        const auto& [body, drag] = on.drags[d];
-        const std::size_t t = on.tool_of_drag[d];
-        tools_[t] = {std::get<Grip>(handles_[t]).centre(time), nodes(body).positions[std::size_t(drag.node)]};
+        const auto& [body, push] = on.pushes[d];
+        const std::size_t t = on.tool_of_push[d];
+        tools_[t] = {std::get<Grip>(handles_[t]).centre(time), nodes(body).positions[std::size_t(push.node)]};
     }
     for (std::size_t m = 0; m < world_.count(); ++m) {
         const Stats& stats = stats_.bodies[m];

@@ -13,11 +13,10 @@
 
 namespace palpate {
 
-/// What hands do to bodies during a frame, besides the scene's own tools. A body takes most_presses and
-/// most_drags, those of tools included.
+/// What hands do to bodies during a frame, besides the scene's own tools. Any number.
 struct Hands {
     std::vector<Press> presses;
-    std::vector<BodyDrag> pulls;
+    std::vector<BodyPush> pulls;
 
     bool empty() const { return presses.empty() && pulls.empty(); }
 };

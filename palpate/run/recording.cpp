@@ -25,19 +25,19 @@ json of_press(const Press& press) {
             {"stiffness", press.stiffness}};
 }
 
-json of_pull(const BodyDrag& pull) {
+json of_pull(const BodyPush& pull) {
     return {{"body", pull.body},
-            {"node", pull.drag.node},
-            {"to", numbers(pull.drag.to)},
-            {"velocity", numbers(pull.drag.velocity)},
-            {"stiffness", pull.drag.stiffness}};
+            {"node", pull.push.node},
+            {"to", numbers(pull.push.to)},
+            {"velocity", numbers(pull.push.velocity)},
+            {"stiffness", pull.push.stiffness}};
 }
 
 json of_input(const Input& input) {
     json one = {{"at", input.at}};
     if (const auto* hands = std::get_if<Hands>(&input.what)) {
         for (const Press& press : hands->presses) one["press"].push_back(of_press(press));
-        for (const BodyDrag& pull : hands->pulls) one["pull"].push_back(of_pull(pull));
+        for (const BodyPush& pull : hands->pulls) one["pull"].push_back(of_pull(pull));
     } else if (const auto* set = std::get_if<SetChanges>(&input.what)) {
         one["changes"] = set->changes;
     } else {

@@ -267,7 +267,7 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     tool.lines = read.lines();
     read("name", tool.name);
     read("kind", tool.kind);
-    if (tool.kind == ToolKind::drag) tool.stiffness = Drag{}.stiffness;
+    if (tool.kind == ToolKind::drag) tool.stiffness = 50;
     read("device", tool.device);
     read("radius", tool.radius, above_zero("m", "a finger's tip has about 0.01 m").usual(1e-5, 1));
     read("stiffness", tool.stiffness, above_zero("N/m", "400 is usual").usual(1e-3, 1e6));

@@ -163,7 +163,7 @@ struct ToolRecipe {
     ToolKind kind = ToolKind::press;
     std::string device = "script";  // of a dent: one that follows a path, by its name (touch/drivers.h)
     float radius = 0.01f;           // m; of a drag: how large it is drawn
-    float stiffness = 400;          // N/m, see Press and Drag; 50 for a drag
+    float stiffness = 400;          // N/m, see Press and NodePush; 50 for a drag
     Path path;                      // s, m; a file of rows or the rows themselves
     vec3 colour = vec3(0.25f, 0.45f, 0.75f);
     // ---- of a press, and of a dent ----

@@ -102,17 +102,15 @@ void check(double seconds, const Influences& influences, const Body& body, const
     };
     auto has = [&](int node) { return node >= 0 && std::size_t(node) < body.count(); };
     require(seconds > 0 && std::isfinite(seconds), "a time that is not above 0 s", "step by more");
-    require(influences.presses.size() <= most_presses, "more than 8 presses at once", "hand in fewer");
     for (const Press& press : influences.presses)
         require(is_finite(press.centre) && is_finite(press.velocity) && press.radius > 0 &&
                     std::isfinite(press.radius) && press.stiffness >= 0 && std::isfinite(press.stiffness),
                 "a press that is not finite, or has no radius, or a negative stiffness", "give it all three");
-    require(influences.drags.size() <= most_drags, "more than 8 drags at once", "hand in fewer");
-    for (const Drag& drag : influences.drags) {
-        require(has(drag.node), "a drag of a node that the body does not have", "count its nodes from 0");
-        require(is_finite(drag.to) && is_finite(drag.velocity) && drag.stiffness >= 0 &&
-                    std::isfinite(drag.stiffness),
-                "a drag that is not finite, or has a negative stiffness", "give it both");
+    for (const NodePush& push : influences.pushes) {
+        require(has(push.node), "a push of a node that the body does not have", "count its nodes from 0");
+        require(is_finite(push.to) && is_finite(push.velocity) && is_finite(push.force) &&
+                    push.stiffness >= 0 && std::isfinite(push.stiffness),
+                "a push that is not finite, or has a negative stiffness", "give it in N, m and N/m");
     }
     for (const Move& move : influences.moves) {
         require(move.nodes.size() == move.to.size(), "a move of nodes without a place for each",

@@ -1,6 +1,7 @@
 #include "palpate/solver/longest_step.h"
 
 #include "palpate/base/error.h"
+#include "palpate/solver/pushes.h"
 #include "palpate/solver/short_steps.h"
 #include "palpate/solver/stability.h"
 
@@ -14,14 +15,8 @@ namespace palpate {
 ToolStiffness tool_stiffness(const Influences& influences) {
     ToolStiffness tools;
     for (const Press& press : influences.presses) tools.contact += pressure_per_metre(press);
-    std::vector<std::pair<int, float>> pulls;
-    for (const Drag& drag : influences.drags) pulls.emplace_back(drag.node, drag.stiffness);
-    std::ranges::sort(pulls);
-    float of_node = 0;
-    for (std::size_t i = 0; i < pulls.size(); ++i) {
-        const bool same = i > 0 && pulls[i].first == pulls[i - 1].first;
-        of_node = (same ? of_node : 0) + pulls[i].second;
-        tools.pull = std::max(tools.pull, of_node);
+    for (const NodePush& push : by_node(influences.pushes)) {
+        tools.pull = std::max(tools.pull, push.stiffness);
     }
     return tools;
 }

@@ -10,7 +10,7 @@ namespace palpate {
 /// How stiffly tools hold a body at one moment: all that they change about its stability.
 struct ToolStiffness {
     float contact = 0;  // Pa/m, of all presses together: they may meet at one node
-    float pull = 0;     // N/m, of all drags of that node on which they pull most strongly
+    float pull = 0;     // N/m, of all pushes of that node which they hold most stiffly
     bool operator==(const ToolStiffness&) const = default;
 };
 ToolStiffness tool_stiffness(const Influences& influences);

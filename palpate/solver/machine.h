@@ -16,10 +16,10 @@ class Team;
 
 /// What a machine found out during a call.
 struct Findings {
-    bool torn = false;                        // the motion has blown up
-    double largest_speed = 0;                 // m/s, of any node at the end
-    double largest_move = 0;                  // m, of any node in the last step
-    std::vector<dvec3> by_presses, by_drags;  // N s that each gave to the nodes
+    bool torn = false;                         // the motion has blown up
+    double largest_speed = 0;                  // m/s, of any node at the end
+    double largest_move = 0;                   // m, of any node in the last step
+    std::vector<dvec3> by_presses, by_pushes;  // N s that each gave to the nodes
 };
 
 /// Where the nodes of a body live and how they are gone over: memory and loops, which is all that backends

@@ -17,7 +17,8 @@
 //   longest(l)         ten times its rest length, squared, m^2
 //   origin()           what this node's position counts from: the world's, or its own place at rest, m
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
-//   held(i)            1 where drag i holds this node, else 0
+//   tip(i)             the Tip i
+//   push(), push_target(), push_stiffness()   what pushes this node: a force, N; where a spring draws it, m; its stiffness
 //   corner(i)          corner i of all polygons, m
 //   distance_at(i, p), uphill_at(i, p)   field i at p: the distance, m, and which way it grows
 // These, and loading and storing nodes, are all that a backend writes itself. It may also define OWN_PULL and bring the
@@ -29,8 +30,8 @@
 #ifndef TIPS
 #define TIPS pass.tips
 #endif
-#ifndef DRAGS
-#define DRAGS pass.drags
+#ifndef PUSHES
+#define PUSHES pass.pushes
 #endif
 #ifndef OBSTACLES
 #define OBSTACLES pass.obstacles
@@ -82,15 +83,16 @@ ASIDE Real3 outward(Real3 position) {
 
 // A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
 FN Real3 tip_force(Real3 position, int i) {
-    Real3 away = origin() + position - xyz(pass.tip[i]);
+    Tip t = tip(i);
+    Real3 away = origin() + position - xyz(t.place);
     Real square = squared(away);
     Real inverse = inversesqrt(square);
-    Real depth = max(Real(pass.tip[i].w) + cover() - square * inverse, Real(0.0f));
-    return (Real(pass.tip_push[i].x) * area() * depth * inverse) * away;
+    Real depth = max(Real(t.place.w) + cover() - square * inverse, Real(0.0f));
+    return (Real(t.push.x) * area() * depth * inverse) * away;
 }
 
-FN Real3 drag_force(Real3 position, int i) {
-    return (held(i) * Real(pass.drag[i].w)) * (xyz(pass.drag[i]) - (origin() + position));
+FN Real3 push_force(Real3 position) {
+    return push() + push_stiffness() * (push_target() - (origin() + position));
 }
 
 // The air presses with half its density x the square of its speed through the surface: on both sides of a sheet, on
@@ -106,14 +108,14 @@ ASIDE Real3 wind_force(Node node) {
 FN Real3 tool_force(Real3 position) {
     Real3 force = Real3(0.0f, 0.0f, 0.0f);
     for (int i = 0; i < TIPS; ++i) force += tip_force(position, i);
-    for (int i = 0; i < DRAGS; ++i) force += drag_force(position, i);
+    if (PUSHES > 0) force += push_force(position);
     return force;
 }
 
 FN Real3 acceleration(Node node) {
     Real3 force = spring_force(node.position);
     if (LINK_DAMPING) force += spring_damping(node);
-    if (TIPS + DRAGS > 0) force += tool_force(node.position);
+    if (TIPS + PUSHES > 0) force += tool_force(node.position);
     if (WIND) force += wind_force(node);
     return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;
 }

@@ -76,20 +76,11 @@ Pass make_pass(const Body& body, const Simulation& simulation) {
     return pass;
 }
 
-void place_tools(Pass& pass, const Influences& influences, double time) {
-    assert(influences.presses.size() <= std::size(pass.tip) &&
-           influences.drags.size() <= std::size(pass.drag));
-    pass.tips = int(influences.presses.size());
-    for (int i = 0; i < pass.tips; ++i) {
-        const Press& press = influences.presses[i];
-        pass.tip[i] = vec4(press.centre + float(time) * press.velocity, press.radius);
-        pass.tip_push[i] = vec4(pressure_per_metre(press), 0, 0, 0);
-    }
-    pass.drags = int(influences.drags.size());
-    for (int i = 0; i < pass.drags; ++i) {
-        const Drag& drag = influences.drags[i];
-        pass.drag[i] = vec4(drag.to + float(time) * drag.velocity, drag.stiffness);
-    }
+void place_tips(std::vector<Tip>& tips, const Influences& influences, double time) {
+    tips.clear();
+    for (const Press& press : influences.presses)
+        tips.push_back({vec4(press.centre + float(time) * press.velocity, press.radius),
+                        vec4(pressure_per_metre(press), 0, 0, 0)});
 }
 
 void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time) {

@@ -16,8 +16,8 @@ namespace palpate {
 /// touches it.
 Pass make_pass(const Body& body, const Simulation& simulation);
 
-/// Puts tips and drags where they are `time` seconds into the call.
-void place_tools(Pass& pass, const Influences& influences, double time);
+/// The tips where they are `time` seconds into the call.
+void place_tips(std::vector<Tip>& tips, const Influences& influences, double time);
 
 /// Puts the obstacles where they are `time` seconds into the call.
 void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time);

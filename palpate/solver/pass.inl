@@ -22,6 +22,12 @@ struct Obstacle {
     ivec4 kind;        // one of the above; first corner and number of corners of a polygon; number of a field
 };
 
+// A round tip that presses, where it is in this pass. There may be any number, so they lie beside the Pass.
+struct Tip {
+    vec4  place;       // centre; radius
+    vec4  push;        // x: pressure for each metre of depth, Pa/m
+};
+
 struct Pass {
     vec4  gravity;     // m/s^2
     vec4  wind;        // m/s; w: density of the air, kg/m^3
@@ -35,14 +41,11 @@ struct Pass {
     int   links;       // of a node
     int   fan;         // the first so many of them go round it in a sheet
     int   tips;
-    int   drags;
+    int   pushes;      // 0: no node is pushed
     int   obstacles;
     int   last;        // 1 in the last pass of a step, 2 in that of a call, else 0
-    int   padding_1, padding_2, padding_3;
-    vec4  tip[8];      // centre, radius
-    vec4  tip_push[8]; // x: pressure for each metre of depth, Pa/m
-    vec4  drag[8];     // where to, stiffness in N/m
-    ivec4 dragged[2];  // the node that each drag holds, as a backend of the GPU numbers it
+    float time;        // s, from the start of the call to where forces are taken
+    float padding_1, padding_2;
     Obstacle obstacle[16];
     LinkNumbers spring[32];
 };

@@ -22,6 +22,7 @@ struct Turn {
     bool opens;             // the first of a step
     bool ends;              // the last of a call
     double impulse;         // s, over which its forces give momentum to the nodes
+    std::span<const Tip> tips = {};
 };
 
 /// One call of Solver::step, as every machine goes through it.
@@ -29,9 +30,10 @@ struct Call {
     const Scheme& scheme;
     const Simulation& simulation;
     const Influences& influences;
-    std::span<const Guide> guides;  // of the nodes of inverse mass 0
-    Pass constant;                  // what all of its passes have alike
-    double step;                    // s
+    std::span<const Guide> guides;     // of the nodes of inverse mass 0
+    std::span<const NodePush> pushes;  // all of each node together
+    Pass constant;                     // what all of its passes have alike
+    double step;                       // s
     int steps;
     double lag;  // s, of the velocities when it begins
 
@@ -40,6 +42,7 @@ struct Call {
     template <class Run>
     void for_each_pass(Run run) const {
         Pass pass = constant;
+        std::vector<Tip> tips;
         for (int i = 0; i < steps; ++i) {
             double reached = 0;  // by the last stage, in steps
             Where at = current;
@@ -50,7 +53,8 @@ struct Call {
                 pass.drift = float(stage.drift * step);
                 pass.lead = float(stage.lead);
                 pass.part = float(stage.part * step);
-                place_tools(pass, influences, (i + reached) * step);
+                pass.time = float((i + reached) * step);
+                place_tips(tips, influences, (i + reached) * step);
                 const double impulse = last ? scheme.reach(stage, step, behind) : stage.part * step;
                 reached = last ? 1 : stage.drift;
                 pass.last = last ? (i + 1 == steps ? 2 : 1) : 0;
@@ -58,7 +62,7 @@ struct Call {
                 place_obstacles(pass, simulation, influences, (i + reached) * step);
                 const Where next = last && at != current ? current : at == between ? further : between;
                 run(pass, Turn{stage.from_sum ? sum : current, at, next, at == current,
-                               last && i + 1 == steps, impulse});
+                               last && i + 1 == steps, impulse, tips});
                 at = next;
             }
         }

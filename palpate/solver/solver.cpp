@@ -3,6 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/solver/check.h"
 #include "palpate/solver/machine.h"
+#include "palpate/solver/pushes.h"
 #include "palpate/solver/stability.h"
 
 #include <fmt/format.h>
@@ -76,8 +77,11 @@ Stats Solver::go_on(double seconds, const Influences& influences) {
     stats.step = seconds / stats.steps;
     Pass constant = make_pass(body_, simulation_);
     constant.wind = vec4(influences.wind, simulation_.air);
-    const Call call{scheme_,  simulation_, influences,  guides_.lead(influences, seconds),
-                    constant, stats.step,  stats.steps, lag_};
+    constant.tips = int(influences.presses.size());
+    constant.pushes = influences.pushes.empty() ? 0 : 1;
+    const std::vector<NodePush> pushes = by_node(influences.pushes);
+    const Call call{scheme_,    simulation_, influences, guides_.lead(influences, seconds), pushes, constant,
+                    stats.step, stats.steps, lag_};
     Findings found = machine_->run(call);
     shown_ = false;
     lag_ = call.lag_after();
@@ -87,12 +91,12 @@ Stats Solver::go_on(double seconds, const Influences& influences) {
     if (stats.diverged) {
         undo();
         found = {.by_presses = std::vector<dvec3>(influences.presses.size()),
-                 .by_drags = std::vector<dvec3>(influences.drags.size())};
+                 .by_pushes = std::vector<dvec3>(influences.pushes.size())};
     }
     stats.largest_speed = found.largest_speed;
     stats.largest_move = found.largest_move;
     for (dvec3 given : found.by_presses) stats.reactions.push_back(dvec3(0) - given);
-    for (dvec3 given : found.by_drags) stats.pulls.push_back(dvec3(0) - given);
+    for (dvec3 given : found.by_pushes) stats.pushes.push_back(dvec3(0) - given);
     return stats;
 }
 

@@ -29,7 +29,7 @@ struct Stats {
     bool diverged = false;     // the motion blew up; the state is that from before the call
     std::vector<dvec3>
         reactions;  // N s, one a press: the impulse that the body gave to the tip; its opposite it got
-    std::vector<dvec3> pulls;  // N s, one a drag, likewise
+    std::vector<dvec3> pushes;  // N s, one a push, likewise
 };
 
 /// How many equal steps, none longer than `longest`, fill a time; at least one. Throws Error
@@ -50,10 +50,9 @@ class Solver final {
     Solver& operator=(const Solver&) = delete;
 
     /// Moves the body on by `seconds`, in equal steps no longer than the chosen one. Throws Error, and
-    /// nothing has moved, where `seconds` is not above zero or would be more than a billion steps, more act
-    /// than most_presses or most_drags, an influence is not finite or names a node that the body does not
-    /// have, colliders have not one motion each, or tools are so stiff that the step is above its bound, or
-    /// would be too short (LongestStep).
+    /// nothing has moved, where `seconds` is not above zero or would be more than a billion steps, an
+    /// influence is not finite or names a node that the body does not have, colliders have not one motion
+    /// each, or tools are so stiff that the step is above its bound, or would be too short (LongestStep).
     Stats step(double seconds, const Influences& influences = {});
 
     /// The same, but undo() then puts back what was before the last call of step(): for a call in parts.
@@ -79,7 +78,7 @@ class Solver final {
     GpuNodes gpu_nodes() const;
 
     /// Positions and velocities at the same moment, whatever the integrator's own bookkeeping; as if tips,
-    /// drags, wind and colliders were gone just then: with Verlet a node at rest on the ground shows half a
+    /// pushes, wind and colliders were gone just then: with Verlet a node at rest on the ground shows half a
     /// step of gravity.
     State state() const;
 

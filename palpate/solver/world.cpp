@@ -14,26 +14,26 @@ class OneSlice {
  public:
     OneSlice(const Acts& acts, std::size_t bodies, double time, double left)
         : presses_(acts.presses.begin(), acts.presses.end()),
-          drags_(bodies),
+          pushes_(bodies),
           moves_(bodies),
           bodies_(bodies) {
         const auto t = float(time);
         for (Press& press : presses_) press.centre += t * press.velocity;
-        for (const auto& [body, drag] : acts.drags) {
-            drags_[body].push_back(drag);
-            drags_[body].back().to += t * drag.velocity;
+        for (const auto& [body, push] : acts.pushes) {
+            pushes_[body].push_back(push);
+            pushes_[body].back().to += t * push.velocity;
         }
         for (const auto& [body, move] : acts.moves) moves_[body].push_back(move);
         for (const Motion& motion : acts.colliders) colliders_.push_back(after(motion, t));
         for (std::size_t b = 0; b < bodies; ++b)
-            bodies_[b] = {presses_, drags_[b], moves_[b], colliders_, acts.wind, left};
+            bodies_[b] = {presses_, pushes_[b], moves_[b], colliders_, acts.wind, left};
     }
 
     const Influences& on(std::size_t body) const { return bodies_[body]; }
 
  private:
     std::vector<Press> presses_;
-    std::vector<std::vector<Drag>> drags_;
+    std::vector<std::vector<NodePush>> pushes_;
     std::vector<std::vector<Move>> moves_;
     std::vector<Motion> colliders_;
     std::vector<Influences> bodies_;
@@ -49,7 +49,7 @@ void add(Stats& all, Stats slice) {
     slice.steps += all.steps;
     if (all.steps > 0) slice.step = std::min(slice.step, all.step);
     add(slice.reactions, all.reactions.empty() ? std::vector<dvec3>(slice.reactions.size()) : all.reactions);
-    add(slice.pulls, all.pulls.empty() ? std::vector<dvec3>(slice.pulls.size()) : all.pulls);
+    add(slice.pushes, all.pushes.empty() ? std::vector<dvec3>(slice.pushes.size()) : all.pushes);
     all = std::move(slice);
 }
 
@@ -75,7 +75,7 @@ WorldStats World::step(double seconds, const Acts& acts) {
             throw Error(fmt::format("body {} of {}", body, count()), "a step of the world",
                         "count bodies from 0");
     };
-    for (const BodyDrag& one : acts.drags) require(one.body);
+    for (const BodyPush& one : acts.pushes) require(one.body);
     for (const BodyMove& one : acts.moves) require(one.body);
     WorldStats stats;
     stats.bodies.resize(count());
@@ -98,9 +98,9 @@ WorldStats World::step(double seconds, const Acts& acts) {
     }
     stats.reactions.assign(acts.presses.size(), dvec3(0));
     for (const Stats& one : stats.bodies) ::palpate::add(stats.reactions, one.reactions);
-    std::vector<std::size_t> next(count(), 0);  // of each body's drags
-    for (const BodyDrag& one : acts.drags)
-        stats.pulls.push_back(stats.bodies[one.body].pulls[next[one.body]++]);
+    std::vector<std::size_t> next(count(), 0);  // of each body's pushes
+    for (const BodyPush& one : acts.pushes)
+        stats.pushes.push_back(stats.bodies[one.body].pushes[next[one.body]++]);
     return stats;
 }
 

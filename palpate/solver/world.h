@@ -10,9 +10,9 @@
 namespace palpate {
 
 /// What acts on one body of a world alone.
-struct BodyDrag {
+struct BodyPush {
     std::size_t body = 0;  // its number
-    Drag drag;
+    NodePush push;
 };
 struct BodyMove {
     std::size_t body = 0;
@@ -22,7 +22,7 @@ struct BodyMove {
 /// What acts in a world during one call of World::step, besides gravity.
 struct Acts {
     std::span<const Press> presses = {};  // all bodies feel them
-    std::span<const BodyDrag> drags = {};
+    std::span<const BodyPush> pushes = {};
     std::span<const BodyMove> moves = {};
     std::span<const Motion> colliders = {};  // as in Influences
     vec3 wind = vec3(0);                     // m/s
@@ -33,7 +33,7 @@ struct WorldStats {
     std::vector<Stats> bodies;
     std::optional<std::size_t> diverged;  // the body that blew up; then all are as they were before
     std::vector<dvec3> reactions;         // N s, one a press, of all bodies together: as in Stats
-    std::vector<dvec3> pulls;             // N s, one a drag
+    std::vector<dvec3> pushes;            // N s, one a push
 };
 
 /// Bodies that move together: in common slices of time, on one team of threads.

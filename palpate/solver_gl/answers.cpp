@@ -19,7 +19,6 @@ struct Answers::Found {
 namespace {
 
 constexpr std::size_t before_impulses = 64;  // bytes of a letter
-constexpr std::size_t most_tools = std::size(Pass{}.tip) + std::size(Pass{}.drag);
 
 // The float whose bits closing.comp put in order.
 float from_order(int ordered) { return std::bit_cast<float>(ordered ^ (ordered >> 31 & 0x7fffffff)); }
@@ -27,18 +26,22 @@ float from_order(int ordered) { return std::bit_cast<float>(ordered ^ (ordered >
 }  // namespace
 
 Answers::Answers(const gl::Context& context, int adders)
-    : context_(context),
-      adders_(adders),
-      findings_(gl::Buffer::room(sizeof(Found))),
-      impulses_(gl::Buffer::room(most_tools * std::size_t(adders) * sizeof(vec4))) {
+    : context_(context), adders_(adders), findings_(gl::Buffer::room(sizeof(Found))) {
+    make_room(1);
+    reset_findings();
+}
+
+void Answers::make_room(std::size_t impulses) {
+    room_ = impulses;
+    impulses_ = gl::Buffer::room(impulses * sizeof(vec4));
     constexpr GLbitfield how = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    const auto bytes = GLsizeiptr(before_impulses + most_tools * std::size_t(adders) * sizeof(vec4));
-    glNamedBufferStorage(letter_.name(), bytes, nullptr, how | GL_CLIENT_STORAGE_BIT);
-    seen_ = static_cast<const std::byte*>(glMapNamedBufferRange(letter_.name(), 0, bytes, how));
+    const auto bytes = GLsizeiptr(before_impulses + impulses * sizeof(vec4));
+    letter_.emplace();
+    glNamedBufferStorage(letter_->name(), bytes, nullptr, how | GL_CLIENT_STORAGE_BIT);
+    seen_ = static_cast<const std::byte*>(glMapNamedBufferRange(letter_->name(), 0, bytes, how));
     if (!seen_)
         throw Error("no memory that both the host and the graphics card see", "OpenGL",
                     "use the backend cpu");
-    reset_findings();
 }
 
 void Answers::reset_findings() const {
@@ -53,12 +56,17 @@ void Answers::bind_findings() const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, findings_buffer, findings_.name());
 }
 
-void Answers::clear_impulses() const {
-    glClearNamedBufferData(impulses_.name(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
+std::size_t Answers::impulses_of(const Influences& influences) const {
+    return influences.pushes.size() + influences.presses.size() * std::size_t(adders_);
+}
+
+void Answers::clear_impulses(const Influences& influences) {
+    if (const std::size_t needed = impulses_of(influences); needed > room_) make_room(2 * needed);
+    glClearNamedBufferData(impulses_->name(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
 }
 
 void Answers::bind_impulses() const {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, impulses_buffer, impulses_.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, impulses_buffer, impulses_->name());
 }
 
 void Answers::wait_for_gpu() const {
@@ -73,11 +81,11 @@ void Answers::wait_for_gpu() const {
 }
 
 Answer Answers::wait(const Influences& influences) {
-    const std::size_t tips = influences.presses.size(), tools = tips + influences.drags.size();
-    glCopyNamedBufferSubData(findings_.name(), letter_.name(), 0, 0, sizeof(Found));
-    if (tools > 0)
-        glCopyNamedBufferSubData(impulses_.name(), letter_.name(), 0, before_impulses,
-                                 GLsizeiptr(tools * std::size_t(adders_) * sizeof(vec4)));
+    const std::size_t impulses = impulses_of(influences);
+    glCopyNamedBufferSubData(findings_.name(), letter_->name(), 0, 0, sizeof(Found));
+    if (impulses > 0)
+        glCopyNamedBufferSubData(impulses_->name(), letter_->name(), 0, before_impulses,
+                                 GLsizeiptr(impulses * sizeof(vec4)));
     wait_for_gpu();
 
     Found found;
@@ -92,15 +100,18 @@ Answer Answers::wait(const Influences& influences) {
             answer.bounds.high[k] = from_order(found.high[std::size_t(k)]);
         }
     const std::byte* next = seen_ + before_impulses;
-    for (std::size_t t = 0; t < tools; ++t) {
+    auto sum_of = [&](int parts) {
         dvec3 sum(0);
-        for (int i = 0; i < adders_; ++i, next += sizeof(vec4)) {
+        for (int i = 0; i < parts; ++i, next += sizeof(vec4)) {
             vec4 part;
             std::memcpy(&part, next, sizeof part);
             sum += dvec3(part);
         }
-        (t < tips ? answer.findings.by_presses : answer.findings.by_drags).push_back(sum);
-    }
+        return sum;
+    };
+    for (std::size_t p = 0; p < influences.pushes.size(); ++p) answer.findings.by_pushes.push_back(sum_of(1));
+    for (std::size_t t = 0; t < influences.presses.size(); ++t)
+        answer.findings.by_presses.push_back(sum_of(adders_));
     return answer;
 }
 

@@ -4,6 +4,8 @@
 #include "palpate/solver/machine.h"
 #include "palpate/solver_gl/pipeline.h"
 
+#include <optional>
+
 namespace palpate::gpu {
 
 /// What a call found, and the box around the nodes.
@@ -19,7 +21,8 @@ class Answers {
     Answers(const gl::Context& context, int adders);
 
     void bind_findings() const;
-    void clear_impulses() const;
+    /// Makes room for the impulses of these, all zero.
+    void clear_impulses(const Influences& influences);
     void bind_impulses() const;
 
     /// After all of a call was sent off. Throws Error if the card is lost meanwhile.
@@ -28,11 +31,16 @@ class Answers {
  private:
     struct Found;
     void reset_findings() const;
+    std::size_t impulses_of(const Influences& influences) const;
     void wait_for_gpu() const;
 
     const gl::Context& context_;
     const int adders_;
-    gl::Buffer findings_, impulses_, letter_;
+    void make_room(std::size_t impulses);
+
+    gl::Buffer findings_;
+    std::size_t room_ = 0;  // for so many impulses
+    std::optional<gl::Buffer> impulses_, letter_;
     const std::byte* seen_ = nullptr;  // the letter, as the host sees it
 };
 

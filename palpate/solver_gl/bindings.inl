@@ -7,7 +7,8 @@ const int slots_unit = 8;
 const int before_unit = 9, rim_unit = 9;  // never in one shader
 const int start_positions_unit = 10, start_velocities_unit = 11, was_positions_unit = 12;
 const int sum_positions_unit = 13, sum_velocities_unit = 14;
-const int units = 15;
+const int tips_unit = 15, push_of_unit = 16, pushes_unit = 17;
+const int units = 18;
 
 // Storage buffers.
 const int next_positions_buffer = 0, next_velocities_buffer = 1;

@@ -40,6 +40,15 @@ gl::Field field(GLenum format, const std::vector<Value>& values) {
     return gl::Field(format, sizeof(Value), values.size(), 0, std::as_bytes(std::span(values)));
 }
 
+// In a field that is made anew where there is no room.
+void put(std::optional<gl::Field>& to, const std::vector<vec4>& values) {
+    const std::size_t bytes = values.size() * sizeof(vec4);
+    if (!to || to->bytes() < bytes)
+        to = field(GL_RGBA32F, values);
+    else
+        to->put(std::as_bytes(std::span(values)));
+}
+
 std::vector<uvec4> traits_of(const Body& body, const Placement& placement) {
     std::vector<uvec4> traits(std::size_t(placement.slots), uvec4(0));
     const GridSprings* stencil = placement.grid ? body.grid() : nullptr;
@@ -154,7 +163,7 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     define(!(simulation.air > 0), "WIND false");
     define(simulation.colliders.empty(), "OBSTACLES 0");
     define(!touched, "TIPS 0");
-    define(!touched, "DRAGS 0");
+    define(!touched, "PUSHES 0");
     define(width > 0, fmt::format("FLAT {}", width));
     Text made{{}, sums, placement.slots};
     if (stencil) text += links_of(pass, placement);
@@ -180,7 +189,10 @@ BodyOnGpu::BodyOnGpu(const Body& body, const Simulation& simulation, const Place
       grids_(field(GL_RGBA32F, grids_of(simulation))),
       guide_(number_guides(body)),
       guides_(GL_RGBA32F, sizeof(vec4), 2 * count_guides(body), 0),
-      uniforms_(gl::Buffer::room(sizeof(Pass))) {}
+      uniforms_(gl::Buffer::room(sizeof(Pass))),
+      slot_of_(placement.slot),
+      push_of_(std::size_t(placement.slots), 0),
+      push_of_slots_(field(GL_R32I, push_of_)) {}
 
 void BodyOnGpu::bind() const {
     traits_.bind(traits_unit);
@@ -190,13 +202,14 @@ void BodyOnGpu::bind() const {
     distances_.bind(distances_unit);
     grids_.bind(grids_unit);
     slots_.bind(slots_unit);
+    push_of_slots_.bind(push_of_unit);
     for (GLuint unit = 0; unit < units; ++unit) glBindSampler(unit, 0);
     glBindBufferBase(GL_UNIFORM_BUFFER, pass_block, uniforms_.name());
 }
 
 void BodyOnGpu::upload(const Pass& pass) const {
     // Mostly only the numbers at the front have changed, or nothing.
-    constexpr std::size_t front = offsetof(Pass, tip);
+    constexpr std::size_t front = offsetof(Pass, obstacle);
     const auto* bytes = reinterpret_cast<const std::byte*>(&pass);
     const auto* known = pass_ ? reinterpret_cast<const std::byte*>(&*pass_) : nullptr;
     if (!known || std::memcmp(bytes + front, known + front, sizeof(Pass) - front) != 0)
@@ -213,6 +226,30 @@ void BodyOnGpu::lead(std::span<const Guide> guides) {
         values.emplace_back(vec3(guide.to), guide.is_led ? 1 : 0);
     }
     guides_.put(std::as_bytes(std::span(values)));
+}
+
+void BodyOnGpu::push(std::span<const NodePush> by_nodes, std::span<const NodePush> given) {
+    std::fill(push_of_.begin(), push_of_.end(), 0);
+    std::vector<vec4> values;
+    auto add = [&](const NodePush& push) {
+        const int slot = slot_of_[std::size_t(push.node)];
+        values.emplace_back(push.to, push.stiffness);
+        values.emplace_back(push.velocity, std::bit_cast<float>(slot));
+        values.emplace_back(push.force, 0);
+        return slot;
+    };
+    for (std::size_t p = 0; p < by_nodes.size(); ++p) push_of_[std::size_t(add(by_nodes[p]))] = int(p) + 1;
+    for (const NodePush& push : given) add(push);
+    push_of_slots_.put(std::as_bytes(std::span(push_of_)));
+    put(pushes_, values);
+    pushes_->bind(pushes_unit);
+}
+
+void BodyOnGpu::place(std::span<const Tip> tips) {
+    std::vector<vec4> values;
+    for (const Tip& tip : tips) values.insert(values.end(), {tip.place, tip.push});
+    put(tips_, values);
+    tips_->bind(tips_unit);
 }
 
 std::size_t BodyOnGpu::bytes() const {

@@ -37,6 +37,13 @@ class BodyOnGpu {
     /// Sends them off.
     void lead(std::span<const Guide> guides);
 
+    // Tools act on nodes.
+
+    /// What pushes them during a call: all of each node together, and as it was handed in.
+    void push(std::span<const NodePush> by_nodes, std::span<const NodePush> given);
+    /// Where tips are in what runs next.
+    void place(std::span<const Tip> tips);
+
     std::size_t bytes() const;
 
  private:
@@ -45,6 +52,10 @@ class BodyOnGpu {
     std::vector<int> guide_;  // of each node
     gl::Field guides_;
     gl::Buffer uniforms_;
+    const std::vector<int> slot_of_;  // each node's
+    std::vector<int> push_of_;        // of each slot
+    gl::Field push_of_slots_;
+    std::optional<gl::Field> pushes_, tips_;
     mutable std::optional<Pass> pass_;  // in it
 };
 

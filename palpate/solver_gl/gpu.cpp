@@ -84,18 +84,19 @@ class Gpu final : public Machine {
         const gl::Visit visit;
         const Influences& influences = call.influences;
         on_gpu_.lead(call.guides);
-        const Touched* tools = influences.presses.empty() && influences.drags.empty() ? nullptr : &touched();
+        const bool touches = !influences.presses.empty() || !influences.pushes.empty();
+        const Touched* tools = touches ? &touched() : nullptr;
         Pipeline& pipeline = tools ? *tools->pipeline : *alone_;
-        if (tools) answers_.clear_impulses();
         on_gpu_.bind();
-        Call placed = call;
-        for (std::size_t d = 0; d < influences.drags.size(); ++d)
-            placed.constant.dragged[d / 4][int(d % 4)] =
-                placement_.slot[std::size_t(influences.drags[d].node)];
-        placed.for_each_pass([&](const Pass& pass, const Turn& turn) {
+        if (tools) {
+            answers_.clear_impulses(influences);
+            on_gpu_.push(call.pushes, influences.pushes);
+        }
+        call.for_each_pass([&](const Pass& pass, const Turn& turn) {
             on_gpu_.upload(pass);
+            if (tools) on_gpu_.place(turn.tips);
             look_at(*states_[turn.at]);
-            if (tools && turn.impulse > 0) add_impulses(*tools, turn.impulse);
+            if (tools && turn.impulse > 0) add_impulses(*tools, call, turn.impulse);
             run(pipeline, turn);
         });
         return close(influences);
@@ -239,9 +240,11 @@ class Gpu final : public Machine {
         return states_[scheme_.stages.size() == 1 ? between : further]->positions;
     }
 
-    void add_impulses(const Touched& tools, double seconds) const {
+    void add_impulses(const Touched& tools, const Call& call, double seconds) const {
         tools.impulses.use();
         tools.impulses.set("seconds", float(seconds));
+        tools.impulses.set("first_push", int(call.pushes.size()));
+        tools.impulses.set("pushes_given", int(call.influences.pushes.size()));
         tools.impulses.set("count", int(placement_.rim.size()));
         on_gpu_.bind_rim();
         answers_.bind_impulses();

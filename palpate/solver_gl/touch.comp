@@ -1,23 +1,29 @@
-// touch.comp: the impulses that tips and drags give to the nodes in one pass. Each invocation adds up those that a tip
-// gives to every so manieth node of the outside, which alone it touches; the host adds up the sums.
+// touch.comp: the impulses that tips and pushes give to the nodes in one pass. Each invocation adds up those that a tip
+// gives to every so manieth node of the outside, which alone it touches; the host adds up the sums. Pushes are gone through
+// one by one.
 
 layout(local_size_x = group_size) in;
 layout(binding = rim_unit) uniform isamplerBuffer rim;  // the slots of the nodes of the outside
-layout(std430, binding = impulses_buffer) buffer Impulses { vec4 impulses[]; };  // N s: by tips and then drags, of each invocation
-uniform int count;      // of the nodes of the outside
-uniform float seconds;  // over which the forces act
+layout(std430, binding = impulses_buffer) buffer Impulses { vec4 impulses[]; };  // N s: of each push; then by tips, of each invocation
+uniform int count;         // of the nodes of the outside
+uniform int first_push;    // in `pushes`, of those that were handed in,
+uniform int pushes_given;  // and how many those are
+uniform float seconds;     // over which the forces act
 
 void main() {
     int first = int(gl_GlobalInvocationID.x), stride = int(gl_NumWorkGroups.x * gl_WorkGroupSize.x);
+    for (int p = first; p < pushes_given; p += stride) {
+        vec4 to = texelFetch(pushes, 3 * (first_push + p)), velocity = texelFetch(pushes, 3 * (first_push + p) + 1);
+        vec3 force = texelFetch(pushes, 3 * (first_push + p) + 2).xyz;
+        vec3 position = at(positions, floatBitsToInt(velocity.w)).xyz;
+        impulses[p].xyz += seconds * (force + to.w * (to.xyz + pass.time * velocity.xyz - position));
+    }
     for (int i = 0; i < TIPS; ++i) {
         vec3 sum = vec3(0);
         for (int k = first; k < count; k += stride) {
             look_at(texelFetch(rim, k).x);
             sum += tip_force(at(positions, id).xyz, i);
         }
-        impulses[i * stride + first].xyz += seconds * sum;
+        impulses[pushes_given + i * stride + first].xyz += seconds * sum;
     }
-    if (first >= DRAGS) return;
-    look_at(pass.dragged[first / 4][first % 4]);
-    impulses[(TIPS + first) * stride + first].xyz += seconds * drag_force(at(positions, id).xyz, first);
 }

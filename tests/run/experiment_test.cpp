@@ -205,28 +205,23 @@ TEST(Experiment, HandsPullAndFeelIt) {
     EXPECT_TRUE(experiment.play().pushes().pulls.empty());
 }
 
-TEST(Experiment, TakesNoMoreHandsThanFit) {
+TEST(Experiment, TakesAnyNumberOfHandsThatAreNotTooStrong) {
     const std::string tools =
         beam +
         "[[tool]]\nradius = 0.02\npath = [[0, 1, 1, 1], [9, 1, 1, 1]]\n"
         "[[tool]]\nkind = \"drag\"\nnear = [0.08, 0, 0]\npath = [[0, 0.1, 0, 0], [9, 0.1, 0, 0]]\n";
     Experiment experiment = going(1, tools);
     Hands hands;
-    for (std::size_t i = 0; i + 1 < most_presses; ++i) {
+    for (int i = 0; i < 20; ++i) {
         hands.presses.push_back({vec3(1), vec3(0), 0.01f, 1});
         hands.pulls.push_back(pulling(8, vec3(0.1f)).pulls[0]);
     }
     EXPECT_TRUE(experiment.takes(hands));
     EXPECT_TRUE(experiment.advance(hands));
-    Hands more = hands;
-    more.presses.push_back(more.presses[0]);
-    EXPECT_FALSE(experiment.takes(more));
-    more = hands;
-    more.pulls.push_back(more.pulls[0]);
-    EXPECT_FALSE(experiment.takes(more));
+    Hands more;
     for (float wrong : {-1.0f, 1e30f, NAN}) {
         more = hands;
-        more.pulls[2].drag.stiffness = wrong;
+        more.pulls[2].push.stiffness = wrong;
         EXPECT_FALSE(experiment.takes(more)) << wrong;
         more = hands;
         more.presses[3].stiffness = wrong;
@@ -323,7 +318,7 @@ TEST(Recording, OfAnotherMotionComesOutOtherwise) {
     Recording recording = lively().recording();
     for (Input& input : recording.inputs)  // all of them, since the return undoes the first
         if (auto* hands = std::get_if<Hands>(&input.what); hands && !hands->pulls.empty())
-            hands->pulls[0].drag.to.x += 1e-4f;
+            hands->pulls[0].push.to.x += 1e-4f;
     Experiment again(prepare(recording.scene, recording.changes));
     while (again.replay(recording)) {}
     EXPECT_NE(again.fingerprint(), recording.fingerprint);

@@ -56,8 +56,8 @@ TEST(Run, StepsAndFramesAreCounted) {
     for (long count : {100, 301}) {
         steps.steps = count;
         EXPECT_EQ(run(scene({"tool.1.stiffness=1e-9"}), steps).bodies[0].steps, count);
-        EXPECT_GT(run(scene(), steps).bodies[0].steps, count);  // a tool makes them shorter
     }
+    EXPECT_GT(run(scene(), steps).bodies[0].steps, 301);  // a tool makes them shorter
     frames.frames = 0;
     EXPECT_EQ(run(scene(), frames).bodies[0].steps, 0);
 }

@@ -127,7 +127,7 @@ Acting everything(const Body& body) {
     on.motions[1].velocity = {-0.05f, 0.02f, 0};
     on.motions[1].spin = {0, 1, 0};
     on.presses = {{middle + vec3(0, 0, high.z - middle.z + 0.006f), {0, 0, -0.1f}, 0.011f, 30}};
-    on.drags = {{int(body.count() / 2), middle + vec3(0.01f, 0.02f, 0), {0.1f, 0, 0}, 3}};
+    on.pushes = {{int(body.count() / 2), middle + vec3(0.01f, 0.02f, 0), {0.1f, 0, 0}, 3}};
     for (std::size_t i = 0; i < body.count(); i += 3)
         if (body.inverse_mass[i] == 0) {
             on.moved.push_back(int(i));
@@ -139,11 +139,27 @@ Acting everything(const Body& body) {
     return on;
 }
 
+Acting many_tools(const Body& body) {
+    std::mt19937 random(9);
+    auto any = [&](float most) { return std::uniform_real_distribution<float>(-most, most)(random); };
+    auto vector = [&](float most) { return vec3(any(most), any(most), any(most)); };
+    Acting on;
+    for (int i = 0; i < 300; ++i) {
+        const int node = int(random() % body.count());
+        on.pushes.push_back({node, body.positions[std::size_t(node)] + vector(0.01f), vector(0.1f),
+                             i % 3 == 0 ? 0 : 0.5f + any(0.5f), i % 2 == 0 ? vec3(0) : vector(0.01f)});
+    }
+    for (int i = 0; i < 20; ++i)
+        on.presses.push_back({body.positions[random() % body.count()] + vec3(0, 0, 0.007f) + vector(0.001f),
+                              vector(0.05f), 0.008f, 3});
+    return on;
+}
+
 Simulation simulation(const Body& body, const Acting& on, Integrator integrator, Backend backend,
                       int threads) {
     float contact = 0, pull = 0;
     for (const Press& press : on.presses) contact += pressure_per_metre(press);
-    for (const Drag& drag : on.drags) pull += drag.stiffness;
+    for (const NodePush& drag : on.pushes) pull += drag.stiffness;
     const double touched = touched_frequency(body, highest_frequency(body), contact, pull);
     double step = automatic_step(integrator, touched, body.damping, body.link_damping);
     if (!(step > 0 && step < 1e-3)) step = 1e-3;
@@ -199,8 +215,8 @@ void expect_same(Solver& solver, const Body& body, const Acting& on, const Simul
     const double a_little = 1e-4 * seconds;  // of a tenth of a newton
     EXPECT_LE(furthest_apart(of_a.reactions, of_exact.reactions),
               a_little + 10 * furthest_apart(of_b.reactions, of_exact.reactions));
-    EXPECT_LE(furthest_apart(of_a.pulls, of_exact.pulls),
-              a_little + 10 * furthest_apart(of_b.pulls, of_exact.pulls));
+    EXPECT_LE(furthest_apart(of_a.pushes, of_exact.pushes),
+              a_little + 10 * furthest_apart(of_b.pushes, of_exact.pushes));
 }
 
 }  // namespace palpate

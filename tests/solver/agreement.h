@@ -25,16 +25,18 @@ struct Acting {
     std::vector<Collider> colliders;
     std::vector<Motion> motions;
     std::vector<Press> presses;
-    std::vector<Drag> drags;
+    std::vector<NodePush> pushes;
     std::vector<int> moved;
     std::vector<vec3> places;
     std::vector<Move> moves;
     vec3 wind = vec3(0);
     float air = 0;
 
-    Influences influences() const { return {presses, drags, moves, motions, wind}; }
+    Influences influences() const { return {presses, pushes, moves, motions, wind}; }
 };
 Acting everything(const Body& body);
+/// 20 tips and 300 pushes, several on some nodes, with forces and without springs among them.
+Acting many_tools(const Body& body);
 
 Simulation simulation(const Body& body, const Acting& on, Integrator integrator, Backend backend,
                       int threads = 1);

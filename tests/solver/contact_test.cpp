@@ -317,13 +317,13 @@ TEST(Wind, PressesOnTheWindwardSideOfASolid) {
 TEST(Drag, HoldsANodeWithItsSpring) {
     Body body = particle(vec3(0));
     body.damping = 20;
-    const Drag drag{0, {0.1f, 0, 0}, vec3(0), 50};
+    const NodePush drag{0, {0.1f, 0, 0}, vec3(0), 50};
     auto solver = make_solver(body, {});
     Stats stats;
-    for (int i = 0; i < 120; ++i) stats = solver->step(1.0 / 60, {.drags = {&drag, 1}});
+    for (int i = 0; i < 120; ++i) stats = solver->step(1.0 / 60, {.pushes = {&drag, 1}});
     const double sag = 0.1 * double(9.81f) / 50;
     EXPECT_LE(glm::distance(solver->state().positions[0], dvec3(0.1, -sag, 0)), 1e-4);
-    EXPECT_LE(std::abs(stats.pulls[0].y * 60 + 0.1 * double(9.81f)), 1e-3);  // the hand carries its weight
+    EXPECT_LE(std::abs(stats.pushes[0].y * 60 + 0.1 * double(9.81f)), 1e-3);  // the hand carries its weight
 }
 
 TEST_P(Contact, PrescribedNodesArriveWhereTheyShall) {

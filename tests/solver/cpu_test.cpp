@@ -73,7 +73,7 @@ TEST_P(CpuIs, TheSameToTheBitOnAnyNumberOfThreads) {
             EXPECT_TRUE(a.positions == b.positions);
             EXPECT_TRUE(a.velocities == b.velocities);
             EXPECT_TRUE(of_one.reactions == of_many.reactions);
-            EXPECT_TRUE(of_one.pulls == of_many.pulls);
+            EXPECT_TRUE(of_one.pushes == of_many.pushes);
             EXPECT_EQ(of_one.largest_speed, of_many.largest_speed);
             EXPECT_EQ(of_one.largest_move, of_many.largest_move);
         }
@@ -168,14 +168,15 @@ TEST(Cpu, ATurnedBodyMovesAsAnUnturnedOne) {
             EXPECT_NEAR(highest_frequency(other), highest_frequency(body), 2e-2 * highest_frequency(body));
 
             const vec3 pull(0.3f, 0.1f, 0.2f);
-            const Drag drag{int(body.count() / 3), body.positions[body.count() / 3] + 0.1f * pull, pull, 3},
+            const NodePush drag{int(body.count() / 3), body.positions[body.count() / 3] + 0.1f * pull, pull,
+                                3},
                 turned_drag{drag.node, turn.direction(drag.to) + turn.shift, turn.direction(pull), 3};
             Simulation how{.step = 2e-4, .force = true, .gravity = {1, -9, 2}};
             auto straight = make_solver(body, how);
             how.gravity = turn.direction(how.gravity);
             auto turned = make_solver(other, how);
-            straight->step(0.02, {.drags = {&drag, 1}});
-            turned->step(0.02, {.drags = {&turned_drag, 1}});
+            straight->step(0.02, {.pushes = {&drag, 1}});
+            turned->step(0.02, {.pushes = {&turned_drag, 1}});
             const Nodes is = turned->nodes();
             const std::vector<vec3> begins = other.positions,
                                     ends = turn.points({straight->nodes().positions.begin(),
@@ -197,26 +198,60 @@ TEST(Step, FollowsWhatActs) {
     const Body body = lattice({6, 5, 7}, 0.01f, tissue);
     const double frequency = highest_frequency(body);
     const Press soft{.stiffness = 50}, hard{.stiffness = 5000};
-    const Drag drag{.stiffness = 200};
+    const NodePush drag{.stiffness = 200};
     auto solver = make_solver(body, {});
     for (const Influences& on :
          {Influences{}, Influences{.presses = {&soft, 1}}, Influences{.presses = {&hard, 1}}, Influences{},
-          Influences{.drags = {&drag, 1}}, Influences{.presses = {&hard, 1}, .drags = {&drag, 1}},
+          Influences{.pushes = {&drag, 1}}, Influences{.presses = {&hard, 1}, .pushes = {&drag, 1}},
           Influences{.presses = {&soft, 1}}}) {
         float contact = 0, pull = 0;
         for (const Press& press : on.presses) contact += pressure_per_metre(press);
-        for (const Drag& one : on.drags) pull += one.stiffness;
+        for (const NodePush& one : on.pushes) pull += one.stiffness;
         const double touched = touched_frequency(body, frequency, contact, pull);
         for (int twice = 0; twice < 2; ++twice)
             EXPECT_EQ(solver->longest_step(on),
                       automatic_step(Integrator::verlet, touched, body.damping, body.link_damping));
     }
     // Pulls on one node add up; those on several do not.
-    const Drag twice[] = {{.node = 3, .stiffness = 200}, {.node = 3, .stiffness = 200}},
-               apart[] = {{.node = 3, .stiffness = 200}, {.node = 5, .stiffness = 200}};
-    const Drag strong{.stiffness = 400};
-    EXPECT_EQ(solver->longest_step({.drags = twice}), solver->longest_step({.drags = {&strong, 1}}));
-    EXPECT_EQ(solver->longest_step({.drags = apart}), solver->longest_step({.drags = {&drag, 1}}));
+    const NodePush twice[] = {{.node = 3, .stiffness = 200}, {.node = 3, .stiffness = 200}},
+                   apart[] = {{.node = 3, .stiffness = 200}, {.node = 5, .stiffness = 200}};
+    const NodePush strong{.stiffness = 400};
+    EXPECT_EQ(solver->longest_step({.pushes = twice}), solver->longest_step({.pushes = {&strong, 1}}));
+    EXPECT_EQ(solver->longest_step({.pushes = apart}), solver->longest_step({.pushes = {&drag, 1}}));
+}
+
+TEST_P(CpuIs, TheReferenceWithAnyNumberOfTools) {
+    for (auto [name, body] : odd_bodies()) {
+        SCOPED_TRACE(name);
+        expect_same(body, many_tools(body), GetParam(), Backend::cpu, 10, 1e-5);
+    }
+}
+
+// What is pushed alone moves as it is pushed: momentum given is momentum received, however many push a node.
+TEST(Cpu, GivesNodesWhatPushesThem) {
+    Body body = net(std::vector<vec3>(5, vec3(1)), std::vector<float>(5, 0.5f), {});
+    const NodePush pushes[] = {{.node = 1, .force = {3, 0, 0}},
+                               {.node = 1, .force = {0, -2, 0}},
+                               {.node = 4, .to = {1, 2, 1}, .stiffness = 0.5f},
+                               {.node = 4, .to = {1, 1, 3}, .stiffness = 1.5f},
+                               {.node = 4, .force = {0, 0, 1}}};
+    for (Backend backend : {Backend::reference, Backend::cpu}) {
+        auto solver = make_solver(body, {.backend = backend,
+                                         .integrator = Integrator::semi_implicit_euler,
+                                         .step = 1e-3,
+                                         .gravity = vec3(0)});
+        const Stats stats = solver->step(0.1, {.pushes = pushes});
+        const State state = solver->state();
+        dvec3 given(0), received(0);
+        for (dvec3 push : stats.pushes) given -= push;
+        for (dvec3 v : state.velocities) received += 0.5 * v;
+        EXPECT_LE(glm::distance(given, received), 1e-6) << name_of(backend);
+        EXPECT_LE(glm::distance(state.velocities[1], dvec3(0.6, -0.4, 0)), 1e-6);
+        // x'' = (2 (1, 5/4, 5/2) + (0, 0, 1) - 2 x) / 0.5: a swing about (1, 5/4, 3) with 2 rad/s.
+        const double swung = 1 - std::cos(0.2);
+        EXPECT_LE(glm::distance(state.positions[4], dvec3(1, 1 + 0.25 * swung, 1 + 2 * swung)), 1e-3);
+        for (int i : {0, 2, 3}) EXPECT_EQ(state.velocities[std::size_t(i)], dvec3(0));
+    }
 }
 
 TEST(Cpu, TakesABodyOfNoNodes) {

@@ -68,7 +68,7 @@ std::string end_of(Body body, Integrator integrator, Backend backend, bool acted
         const Stats stats = solver->step((acted_on ? 7 : 21) * how.step, on.influences());
         EXPECT_FALSE(stats.diverged);
         hash.add(std::span(stats.reactions));
-        hash.add(std::span(stats.pulls));
+        hash.add(std::span(stats.pushes));
     }
     const State end = solver->save();
     hash.add(std::span(end.positions));

@@ -289,6 +289,14 @@ TEST_F(Gpu, ComputesInTilesAndWithout) {
         }
 }
 
+TEST_P(EveryGpu, TakesAnyNumberOfTools) {
+    for (const auto& [name, body] : odd_bodies()) {
+        if (name != "organ with strength" && name != "cloth" && name != "net") continue;
+        SCOPED_TRACE(name);
+        expect_same(body, many_tools(body), Integrator::verlet, GetParam(), 10, 1e-5, context());
+    }
+}
+
 TEST_P(EveryGpu, TakesABodyOfNoNodes) {
     for (const Body& body : {Body{}, net({}, {}, {})}) {
         auto solver = make_solver(body, {.backend = GetParam()}, context());

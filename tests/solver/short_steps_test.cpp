@@ -50,11 +50,11 @@ TEST(ShortSteps, Tools) {
     const auto solver = make_solver(cloth({11, 11}, 0.02f, light()), {});
     const State before = solver->save();
     const Press press{.radius = 0.01f, .stiffness = 1e12f * 3.14159265f * 1e-4f};
-    const Drag drag{.node = 5, .stiffness = 1e7f};
+    const NodePush drag{.node = 5, .stiffness = 1e7f};
     auto said = [&](const Influences& on) { return palpate::refusal([&] { solver->step(0.01, on); }); };
     expect_only(said({.presses = {&press, 1}}), "that press");
-    expect_only(said({.drags = {&drag, 1}}), "that drag");
-    expect_only(said({.presses = {&press, 1}, .drags = {&drag, 1}}), "that press, that drag");
+    expect_only(said({.pushes = {&drag, 1}}), "that drag");
+    expect_only(said({.presses = {&press, 1}, .pushes = {&drag, 1}}), "that press, that drag");
     EXPECT_TRUE(solver->save().positions == before.positions);
     EXPECT_EQ(said({}), "");
 }

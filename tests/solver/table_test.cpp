@@ -169,7 +169,7 @@ TEST_P(TableIs, TheSameToTheBitOnAnyNumberOfThreads) {
             EXPECT_TRUE(a.positions == b.positions);
             EXPECT_TRUE(a.velocities == b.velocities);
             EXPECT_TRUE(of_one.reactions == of_many.reactions);
-            EXPECT_TRUE(of_one.pulls == of_many.pulls);
+            EXPECT_TRUE(of_one.pushes == of_many.pushes);
         }
     }
 }

@@ -37,22 +37,22 @@ TEST(World, IsItsBodies) {
         alone.push_back(make_solver(body, short_steps));
     }
     const Acting first = everything(bodies[0]);
-    const Drag drags[] = {{.node = 3, .to = vec3(0.05f), .stiffness = 1},
-                          {.node = 8, .stiffness = 2},
-                          {.node = 40, .stiffness = 0.5f}};
-    const BodyDrag on_bodies[] = {{1, drags[0]}, {0, drags[1]}, {1, drags[2]}};
-    const Drag of_second[] = {drags[0], drags[2]};
+    const NodePush drags[] = {{.node = 3, .to = vec3(0.05f), .stiffness = 1},
+                              {.node = 8, .stiffness = 2},
+                              {.node = 40, .stiffness = 0.5f}};
+    const BodyPush on_bodies[] = {{1, drags[0]}, {0, drags[1]}, {1, drags[2]}};
+    const NodePush of_second[] = {drags[0], drags[2]};
     const BodyMove move{0, first.moves[0]};
     for (int call = 0; call < 5; ++call) {
         const WorldStats stats =
-            world.step(0.01, {.presses = first.presses, .drags = on_bodies, .moves = {&move, 1}});
+            world.step(0.01, {.presses = first.presses, .pushes = on_bodies, .moves = {&move, 1}});
         ASSERT_FALSE(stats.diverged);
         const Stats a = alone[0]->step(
-                        0.01, {.presses = first.presses, .drags = {&drags[1], 1}, .moves = first.moves}),
-                    b = alone[1]->step(0.01, {.presses = first.presses, .drags = of_second});
+                        0.01, {.presses = first.presses, .pushes = {&drags[1], 1}, .moves = first.moves}),
+                    b = alone[1]->step(0.01, {.presses = first.presses, .pushes = of_second});
         EXPECT_EQ(stats.bodies[0].steps, a.steps);
         EXPECT_EQ(stats.reactions[0], a.reactions[0] + b.reactions[0]);
-        EXPECT_TRUE(stats.pulls == std::vector<dvec3>({b.pulls[0], a.pulls[0], b.pulls[1]}));
+        EXPECT_TRUE(stats.pushes == std::vector<dvec3>({b.pushes[0], a.pushes[0], b.pushes[1]}));
     }
     for (std::size_t b = 0; b < 2; ++b) expect_same_bits(world.save()[b], alone[b]->save());
 }
@@ -65,9 +65,9 @@ TEST(World, GoesOnInSlices) {
     on.motions.clear();
     World whole(on_cpu), sliced(on_cpu, nullptr, nullptr, 0.002);
     for (World* world : {&whole, &sliced}) world->add(body);
-    const BodyDrag drag{0, on.drags[0]};
+    const BodyPush drag{0, on.pushes[0]};
     const BodyMove move{0, on.moves[0]};
-    const Acts acts{.presses = on.presses, .drags = {&drag, 1}, .moves = {&move, 1}};
+    const Acts acts{.presses = on.presses, .pushes = {&drag, 1}, .moves = {&move, 1}};
     const WorldStats one = whole.step(0.01, acts), five = sliced.step(0.01, acts);
     EXPECT_EQ(one.bodies[0].steps, 20);
     EXPECT_EQ(five.bodies[0].steps, 20);
@@ -77,8 +77,8 @@ TEST(World, GoesOnInSlices) {
     for (std::size_t k = 0; k < on.moved.size(); ++k)
         EXPECT_LE(glm::distance(b.positions[std::size_t(on.moved[k])], dvec3(on.places[k])), 1e-8);
     EXPECT_LE(furthest_apart(one.reactions, five.reactions), 1e-6);
-    EXPECT_LE(furthest_apart(one.pulls, five.pulls), 1e-6);
-    EXPECT_GT(glm::length(one.pulls[0]), 1e-4);
+    EXPECT_LE(furthest_apart(one.pushes, five.pushes), 1e-6);
+    EXPECT_GT(glm::length(one.pushes[0]), 1e-4);
 }
 
 // Whoever blows up, in whichever slice: then all are as they were, to the bit.
@@ -115,12 +115,12 @@ TEST(World, RefusesBeforeAnythingMoves) {
     world.add(pinned_box());
     world.add(lattice({2, 2, 2}, 0.01f, tissue));
     const std::vector<State> before = world.save();
-    const BodyDrag no_body{2, {}}, no_node{1, {.node = 8}};
+    const BodyPush no_body{2, {}}, no_node{1, {.node = 8}};
     EXPECT_NE(refusal([&] {
-                  world.step(0.01, {.drags = {&no_body, 1}});
+                  world.step(0.01, {.pushes = {&no_body, 1}});
               }).find("body 2 of 2"),
               std::string::npos);
-    EXPECT_NE(refusal([&] { world.step(0.01, {.drags = {&no_node, 1}}); }), "");
+    EXPECT_NE(refusal([&] { world.step(0.01, {.pushes = {&no_node, 1}}); }), "");
     EXPECT_NE(refusal([&] { world.step(0); }), "");
     EXPECT_NE(refusal([&] { World({}, nullptr, nullptr, 0); }), "");
     EXPECT_NE(refusal([&] { world.restore({before[0]}); }), "");

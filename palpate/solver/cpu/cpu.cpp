@@ -1,6 +1,7 @@
 #include "palpate/base/team.h"
 #include "palpate/solver/cpu/laid_body.h"
 #include "palpate/solver/machine.h"
+#include "palpate/solver/pushes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +70,7 @@ class Cpu final : public Machine {
             brought_up.*f = arrays.back().data();
         });
         const Fields states[] = {states_[current], brought_up, {}, {}};
-        const Sweep sweep{laid_.view(), pass, at_now, states, {}, {}};
+        const Sweep sweep{laid_.view(), pass, at_now, states, {}};
         Largest none;
         kernels_.show(sweep, 0, all_blocks());
         kernels_.pass(sweep, 0, all_blocks(), none);
@@ -81,7 +82,7 @@ class Cpu final : public Machine {
 
     void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
         const Fields &at = states_[current], &free = states_[between];  // between calls nobody needs it
-        const Sweep sweep{laid_.view(), quiet_, at_now, states_, {}, {}};
+        const Sweep sweep{laid_.view(), quiet_, at_now, states_, {}};
         kernels_.show(sweep, 0, all_blocks());
         kernels_.normals(sweep, 0, all_blocks(), free.x, free.y, free.z);
         positions.resize(body_.count());
@@ -135,12 +136,15 @@ class Cpu final : public Machine {
 
     // All passes of a call.
     Findings go(const Call& call) {
+        const Influences& influences = call.influences;
+        const bool touched = !influences.presses.empty() || !influences.pushes.empty();
+        const std::vector<SlotPush> pushes = in_slots(call.pushes), each = in_slots(influences.pushes);
+        std::vector<int> pushed_slots;
+        for (const SlotPush& one : pushes) pushed_slots.push_back(one.slot);
+        const Pushes pushing = make_pushes(pushed_slots);
         Findings found;
-        std::array<int, 8> dragged{};
-        for (std::size_t d = 0; d < call.influences.drags.size(); ++d)
-            dragged[d] = laid_.layout().slot[std::size_t(call.influences.drags[d].node)];
-        const bool touched = !call.influences.presses.empty() || !call.influences.drags.empty();
-        given_.assign(touched ? laid_.layout().blocks.size() : 0, {});
+        found.by_pushes.assign(influences.pushes.size(), dvec3(0));
+        given_.assign(influences.presses.size() * laid_.layout().blocks.size(), dvec3(0));
         std::vector<Largest> largest(std::size_t(team_.members()));
         std::atomic<bool> torn = false;
 
@@ -150,16 +154,21 @@ class Cpu final : public Machine {
             std::copy(std::begin(states_), std::end(states_), states);
             std::array<Bounds*, 4> moved;
             for (std::size_t where = 0; where < 4; ++where) moved[where] = moved_[where].data();
+            const auto mine = own(pushes, first, end), mine_each = own(each, first, end);
+            hold(pushing, mine);
+            const Sweep begin{laid_.view(), call.constant, at_now, states, moved, &pushing};
             if (states[current].places) {
-                kernels_.show({laid_.view(), call.constant, at_now, states, moved, dragged}, first, end);
+                kernels_.show(begin, first, end);
                 team_.meet();
             }
-            if (touched)
-                kernels_.find_bounds({laid_.view(), call.constant, at_now, states, moved, dragged}, first,
-                                     end);
+            if (touched) kernels_.find_bounds(begin, first, end);
             call.for_each_pass([&](const Pass& pass, const Turn& turn) {
-                const Sweep sweep{laid_.view(), pass, turn, states, moved, dragged};
-                if (touched && turn.impulse > 0) kernels_.give(sweep, first, end, given_.data());
+                const Sweep sweep{laid_.view(), pass, turn, states, moved, &pushing};
+                aim(pushing, mine, pass.time);
+                if (turn.impulse > 0) {
+                    if (pass.tips > 0) kernels_.give(sweep, first, end, given_.data());
+                    give(mine_each, pass.time, turn.impulse, states[turn.at], found.by_pushes);
+                }
                 kernels_.pass(sweep, first, end, largest[std::size_t(member)]);
                 team_.meet();
                 if (pass.last && turn.next != current) {
@@ -167,7 +176,8 @@ class Cpu final : public Machine {
                     std::swap(moved[current], moved[turn.next]);
                 }
             });
-            const Sweep last{laid_.view(), quiet_, at_now, states, moved, dragged};
+            let_go(pushing, mine);
+            const Sweep last{laid_.view(), quiet_, at_now, states, moved};
             if (kernels_.torn(last, first, end)) torn = true;
         });
         for (const Largest& of_member : largest) {
@@ -175,17 +185,66 @@ class Cpu final : public Machine {
             found.largest_move = std::max(found.largest_move, std::sqrt(double(of_member.move)));
         }
         found.torn = torn;
-        add_up(call.influences, found);
+        // Block after block, so that the sums do not depend on who did which.
+        const std::size_t tips = influences.presses.size();
+        found.by_presses.assign(tips, dvec3(0));
+        for (std::size_t g = 0; g < given_.size(); ++g) found.by_presses[g % tips] += given_[g];
         return found;
     }
 
-    // Block after block, so that the sums do not depend on who did which.
-    void add_up(const Influences& influences, Findings& found) const {
-        found.by_presses.assign(influences.presses.size(), dvec3(0));
-        found.by_drags.assign(influences.drags.size(), dvec3(0));
-        for (const Given& given : given_) {
-            for (std::size_t t = 0; t < found.by_presses.size(); ++t) found.by_presses[t] += given.by_tip[t];
-            for (std::size_t d = 0; d < found.by_drags.size(); ++d) found.by_drags[d] += given.by_drag[d];
+    // ---- pushes: a member of the team sees to those of its own nodes, whom alone they concern ----
+
+    struct SlotPush {
+        int slot;
+        std::size_t number;  // among those that were handed in
+        NodePush push;
+    };
+    std::vector<SlotPush> in_slots(std::span<const NodePush> pushes) const {
+        std::vector<SlotPush> all;
+        for (std::size_t p = 0; p < pushes.size(); ++p)
+            all.push_back({laid_.layout().slot[std::size_t(pushes[p].node)], p, pushes[p]});
+        std::ranges::stable_sort(all, {}, &SlotPush::slot);
+        return all;
+    }
+    std::span<const SlotPush> own(const std::vector<SlotPush>& pushes, int first_block, int end_block) const {
+        if (first_block == end_block) return {};
+        const auto& blocks = laid_.layout().blocks;
+        const auto first = std::ranges::lower_bound(pushes, blocks[std::size_t(first_block)].first_slot, {},
+                                                    &SlotPush::slot),
+                   end = std::ranges::lower_bound(pushes, blocks[std::size_t(end_block) - 1].end_slot, {},
+                                                  &SlotPush::slot);
+        return {first, end};
+    }
+    // Memory for them is made when the first come.
+    Pushes make_pushes(std::span<const int> slots) {
+        while (!slots.empty() && push_arrays_.size() < 7) push_arrays_.push_back(laid_.array());
+        if (push_arrays_.empty()) return {};
+        auto array = [&](std::size_t k) { return push_arrays_[k].data(); };
+        return {slots, array(0), array(1), array(2), array(3), array(4), array(5), array(6)};
+    }
+    static void hold(const Pushes& to, std::span<const SlotPush> pushes) {
+        for (const auto& [slot, number, push] : pushes) {
+            to.force_x[slot] = push.force.x, to.force_y[slot] = push.force.y, to.force_z[slot] = push.force.z;
+            to.stiffness[slot] = push.stiffness;
+        }
+    }
+    static void aim(const Pushes& to, std::span<const SlotPush> pushes, float time) {
+        for (const auto& [slot, number, push] : pushes) {
+            const vec3 at = target(push, time);
+            to.target_x[slot] = at.x, to.target_y[slot] = at.y, to.target_z[slot] = at.z;
+        }
+    }
+    static void let_go(const Pushes& to, std::span<const SlotPush> pushes) {
+        for (const auto& [slot, number, push] : pushes)
+            for (float* values : {to.force_x, to.force_y, to.force_z, to.stiffness}) values[slot] = 0;
+    }
+    // N s, that they give to the nodes.
+    void give(std::span<const SlotPush> pushes, float time, double seconds, const Fields& at,
+              std::vector<dvec3>& given) const {
+        for (const auto& [slot, number, push] : pushes) {
+            const dvec3 place =
+                dvec3(body_.positions[std::size_t(push.node)]) + dvec3(at.x[slot], at.y[slot], at.z[slot]);
+            given[number] += seconds * force_on(push, time, place);
         }
     }
 
@@ -219,7 +278,8 @@ class Cpu final : public Machine {
     Fields before_ = {};                // as it was before the call
     std::vector<int> parts_;            // of the blocks, by members
     std::vector<Bounds> moved_[4];      // of each state and block
-    std::vector<Given> given_;
+    std::vector<dvec3> given_;          // by tips, of each block
+    std::vector<Array<float>> push_arrays_;
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ namespace palpate::cpu::HWY_NAMESPACE {
 // A pass in which nothing but springs and gravity acts. What the compiler knows to be none costs nothing.
 struct QuietPass : Pass {
     static constexpr float link_damping = 0;
-    static constexpr int tips = 0, drags = 0, obstacles = 0;
+    static constexpr int tips = 0, pushes = 0, obstacles = 0;
     static constexpr vec4 wind = vec4(0);
     explicit QuietPass(const Pass& pass) : Pass(pass) {}
 
@@ -59,12 +59,16 @@ struct Eyes {
     FN Pack3 origin() const { return load(body.rest_x, body.rest_y, body.rest_z, id); }
     FN Pack area() const { return load(body.area + id); }
     FN Pack cover() const { return load(body.cover + id); }
-    FN Pack held(int i) const {
-        const hn::RebindToSigned<Lanes> d;
-        const auto here = hn::Iota(d, int(id));
-        return select(hn::RebindMask(Lanes(), hn::Eq(here, hn::Set(d, sweep.dragged[std::size_t(i)]))),
-                      Pack(1.0f), Pack(0.0f));
+    Tip tip(int i) const { return sweep.turn.tips[std::size_t(i)]; }
+    FN Pack3 push() const {
+        const Pushes& p = *sweep.pushes;
+        return load(p.force_x, p.force_y, p.force_z, id);
     }
+    FN Pack3 push_target() const {
+        const Pushes& p = *sweep.pushes;
+        return load(p.target_x, p.target_y, p.target_z, id);
+    }
+    FN Pack push_stiffness() const { return load(sweep.pushes->stiffness + id); }
     FN Pack3 corner(int i) const {
         const vec3 c = body.corners[i];
         return {c.x, c.y, c.z};
@@ -103,8 +107,8 @@ using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 // The members of a base that depends on a template must be named.
 #define USE_EYES(P)                                                                                \
     using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin, \
-        Eyes<P>::area, Eyes<P>::cover, Eyes<P>::held, Eyes<P>::corner, Eyes<P>::distance_at,       \
-        Eyes<P>::uphill_at;                                                                        \
+        Eyes<P>::area, Eyes<P>::cover, Eyes<P>::tip, Eyes<P>::push, Eyes<P>::push_target,          \
+        Eyes<P>::push_stiffness, Eyes<P>::corner, Eyes<P>::distance_at, Eyes<P>::uphill_at;        \
     using typename Eyes<P>::Real, typename Eyes<P>::Real3;
 
 // Nodes of a grid: their neighbours along a link are as far away for all of them.
@@ -431,7 +435,7 @@ void pass(const Sweep& s, int first_block, int end_block, Largest& largest) {
     const typename Quiet::WithPass quiet_pass(s.pass);
     const typename Quiet::Constants quiet_constants(quiet_pass);
     const typename At::Constants constants(s.pass);
-    const bool tools = s.pass.tips > 0 || s.pass.drags > 0;
+    const bool tools = s.pass.tips > 0 || s.pass.pushes > 0;
     for (int b = first_block; b < end_block; ++b) {
         const Block& block = s.body.blocks[b];
         const Kept was(s, block);
@@ -464,7 +468,7 @@ FN void add(Pack3 force, double seconds, dvec3& sum) {
     for (std::size_t n = 0; n < lanes(); ++n) sum += seconds * dvec3(x[n], y[n], z[n]);
 }
 
-void give(const Sweep& s, int first_block, int end_block, Given* of_block) {
+void give(const Sweep& s, int first_block, int end_block, dvec3* given) {
     const Fields at = s.states[s.turn.at];
     const TableNode<>::Constants none(s.pass);
     for (int b = first_block; b < end_block; ++b) {
@@ -474,12 +478,7 @@ void give(const Sweep& s, int first_block, int end_block, Given* of_block) {
             for (int t = 0; t < s.pass.tips; ++t) {
                 const Pack3 force = eyes.tip_force(p, t);
                 if (any_node(dot(force, force) > 0.0f))
-                    add(force, s.turn.impulse, of_block[b].by_tip[std::size_t(t)]);
-            }
-            for (int d = 0; d < s.pass.drags; ++d) {
-                const Pack3 force = eyes.drag_force(p, d);
-                if (any_node(dot(force, force) > 0.0f))
-                    add(force, s.turn.impulse, of_block[b].by_drag[std::size_t(d)]);
+                    add(force, s.turn.impulse, given[b * s.pass.tips + t]);
             }
         });
     }

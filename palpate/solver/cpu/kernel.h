@@ -70,6 +70,14 @@ struct Laid {
                    // them exactly beside the place at rest
 };
 
+/// What pushes nodes: of every slot, zero where nothing does.
+struct Pushes {
+    std::span<const int> slots;             // of the nodes that are pushed, in order
+    float *force_x, *force_y, *force_z;     // N
+    float *target_x, *target_y, *target_z;  // m
+    float* stiffness;                       // N/m
+};
+
 /// One pass over some blocks.
 struct Sweep {
     const Laid& body;
@@ -78,7 +86,7 @@ struct Sweep {
     const Fields* states;  // as Where counts them
     std::array<Bounds*, 4>
         moved;  // of each state and block: how far its nodes have come from their places at rest, m
-    std::array<int, 8> dragged;  // slot of each drag
+    const Pushes* pushes = nullptr;
 };
 
 /// The largest of what a sweep saw at the end of a call, squared.
@@ -86,12 +94,7 @@ struct Largest {
     float speed = 0, move = 0;  // m²/s², m²
 };
 
-/// What tips and drags give to the nodes of one block, N s.
-struct Given {
-    std::array<dvec3, 8> by_tip{}, by_drag{};
-};
-
-/// Whether a tip or a drag, or an obstacle, may touch nodes of a block that have come so far from their
+/// Whether a tip or a push, or an obstacle, may touch nodes of a block that have come so far from their
 /// places at rest.
 bool touched(const Sweep& sweep, int block, const Bounds& moved);
 bool near_obstacles(const Sweep& sweep, int block, const Bounds& moved);
@@ -101,7 +104,8 @@ struct Kernels {
     const char* instructions;  // their name: AVX2, AVX3 (AVX-512), NEON …
     int lanes;                 // floats in a register
     void (*pass)(const Sweep&, int first_block, int end_block, Largest& largest);
-    void (*give)(const Sweep&, int first_block, int end_block, Given* of_block);
+    /// Adds what tips give to the nodes of each block, N s: as many numbers a block as there are tips.
+    void (*give)(const Sweep&, int first_block, int end_block, dvec3* given);
     void (*find_bounds)(const Sweep&, int first_block, int end_block);
     /// Neighbours in a table see where nodes have been put from outside. Before anything looks at neighbours.
     void (*show)(const Sweep&, int first_block, int end_block);

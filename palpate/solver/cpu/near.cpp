@@ -1,5 +1,7 @@
 #include "palpate/solver/cpu/kernel.h"
 
+#include <algorithm>
+
 namespace palpate::cpu {
 namespace {
 
@@ -46,12 +48,14 @@ bool may_touch(const Bounds& box, const Obstacle& o, const Laid& body) {
 
 bool touched(const Sweep& sweep, int block, const Bounds& moved) {
     const Block& of = sweep.body.blocks[block];
-    for (int d = 0; d < sweep.pass.drags; ++d)
-        if (const int slot = sweep.dragged[std::size_t(d)]; slot >= of.first_slot && slot < of.end_slot)
-            return true;
+    if (sweep.pass.pushes > 0) {
+        const auto& slots = sweep.pushes->slots;
+        const auto next = std::ranges::lower_bound(slots, of.first_slot);
+        if (next != slots.end() && *next < of.end_slot) return true;
+    }
     const Bounds box = place(sweep.body, block, moved);
     for (int t = 0; t < sweep.pass.tips; ++t) {
-        const vec4 tip = sweep.pass.tip[t];
+        const vec4 tip = sweep.turn.tips[std::size_t(t)].place;
         if (may_touch(box, vec3(tip), 1.00001f * (tip.w + sweep.body.furthest_cover[block]))) return true;
     }
     return false;

@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/solver/pass.h"
+#include "palpate/solver/pushes.h"
 
 #include <cmath>
 #include <vector>
@@ -14,7 +15,8 @@ struct Surroundings {
     Table springs;  // where there is none its end is the node itself, and it pulls at nothing
     std::vector<vec3> corners = {};                 // of polygons
     std::vector<const DistanceField*> fields = {};  // of closed meshes
-    std::vector<int> dragged = {};                  // the node of each drag
+    std::span<const NodePush> pushes = {};          // one a node,
+    std::vector<int> push_of = {};                  // and the number of each node's, or -1
 
     explicit Surroundings(const Body& of) : body(of), springs(table(of)) {
         for (std::size_t t = 0; t < springs.ties.size(); ++t)
@@ -43,6 +45,7 @@ struct SeeingNode {
     int id;
     const Tie* ties;  // this node's springs
     Real outside_area, outside_cover;
+    std::span<const Tip> tips;
 
     Real3 toward(Real3 p, int l) const { return now.positions[std::size_t(ties[l].to)] - p; }
     Real3 passing(Real3 v, int l) const { return now.velocities[std::size_t(ties[l].to)] - v; }
@@ -54,7 +57,14 @@ struct SeeingNode {
     Real3 origin() const { return Real3(0); }
     Real area() const { return outside_area; }
     Real cover() const { return outside_cover; }
-    Real held(int i) const { return world.dragged[std::size_t(i)] == id ? Real(1) : Real(0); }
+    Tip tip(int i) const { return tips[std::size_t(i)]; }
+    const NodePush* own_push() const {
+        const int number = world.push_of[std::size_t(id)];
+        return number < 0 ? nullptr : &world.pushes[std::size_t(number)];
+    }
+    Real3 push() const { return own_push() ? Real3(own_push()->force) : Real3(0); }
+    Real3 push_target() const { return own_push() ? Real3(target(*own_push(), pass.time)) : Real3(0); }
+    Real push_stiffness() const { return own_push() ? Real(own_push()->stiffness) : Real(0); }
     Real3 corner(int i) const { return Real3(world.corners[std::size_t(i)]); }
     Real distance_at(int i, Real3 p) const { return world.fields[std::size_t(i)]->at(vec3(p)); }
     Real3 uphill_at(int i, Real3 p) const { return Real3(world.fields[std::size_t(i)]->uphill(vec3(p))); }
@@ -80,14 +90,16 @@ struct SeeingNode {
 
 /// Node `i` among the others at `now`.
 template <class Real>
-SeeingNode<Real> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now, std::size_t i) {
+SeeingNode<Real> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now, std::size_t i,
+                     std::span<const Tip> tips = {}) {
     return {all,
             pass,
             now,
             int(i),
             all.springs.ties.data() + i * std::size_t(all.springs.width),
             Real(all.body.area[i]),
-            Real(all.body.cover[i])};
+            Real(all.body.cover[i]),
+            tips};
 }
 
 /// Node `i` as it is in `from`.

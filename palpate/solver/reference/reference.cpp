@@ -26,13 +26,15 @@ class Reference final : public Machine {
 
     Findings run(const Call& call) override {
         Findings found{.by_presses = std::vector<dvec3>(call.influences.presses.size()),
-                       .by_drags = std::vector<dvec3>(call.influences.drags.size())};
-        around_.dragged.clear();
-        for (const Drag& drag : call.influences.drags) around_.dragged.push_back(drag.node);
+                       .by_pushes = std::vector<dvec3>(call.influences.pushes.size())};
+        around_.pushes = call.pushes;
+        around_.push_of.assign(call.pushes.empty() ? 0 : body_.count(), -1);
+        for (std::size_t p = 0; p < call.pushes.size(); ++p)
+            around_.push_of[std::size_t(call.pushes[p].node)] = int(p);
         for (const Guide& guide : call.guides)
             states_[current].velocities[std::size_t(guide.node)] = Real3(guide.velocity);
         call.for_each_pass([&](const Pass& pass, const Turn& turn) {
-            count_impulses(pass, turn, found);
+            count_impulses(call.influences, pass, turn, found);
             pass_over_nodes(pass, turn, found);
             if (pass.last && turn.next != current) std::swap(states_[current], states_[turn.next]);
         });
@@ -91,7 +93,7 @@ class Reference final : public Machine {
         const NodeStates<Real>&start = states_[turn.start], &at = states_[turn.at];
         NodeStates<Real>&next = states_[turn.next], &total = states_[sum];
         for (std::size_t i = 0; i < body_.count(); ++i) {
-            At eyes = see(i, at, pass);
+            At eyes = see(i, at, pass, turn);
             const Node node = load(at, i);
             const Real3 change = pass.kick > 0 ? eyes.acceleration(node) : Real3(0);
             if (pass.part > 0) store(eyes.collect(load(turn.opens ? at : total, i), node, change), total, i);
@@ -104,22 +106,24 @@ class Reference final : public Machine {
         }
     }
 
-    // N s, that tips and drags give to the nodes in this pass.
-    void count_impulses(const Pass& pass, const Turn& turn, Findings& found) const {
+    // N s, that tips and pushes give to the nodes in this pass.
+    void count_impulses(const Influences& influences, const Pass& pass, const Turn& turn,
+                        Findings& found) const {
         if (!(turn.impulse > 0)) return;  // a stage that only drifts
         const NodeStates<Real>& at = states_[turn.at];
         for (std::size_t t = 0; t < found.by_presses.size(); ++t)
             for (std::size_t i = 0; i < body_.count(); ++i)
                 found.by_presses[t] +=
-                    turn.impulse * dvec3(see(i, at, pass).tip_force(at.positions[i], int(t)));
-        for (std::size_t d = 0; d < found.by_drags.size(); ++d) {
-            const std::size_t i = std::size_t(around_.dragged[d]);
-            found.by_drags[d] += turn.impulse * dvec3(see(i, at, pass).drag_force(at.positions[i], int(d)));
+                    turn.impulse * dvec3(see(i, at, pass, turn).tip_force(at.positions[i], int(t)));
+        for (std::size_t p = 0; p < found.by_pushes.size(); ++p) {
+            const NodePush& push = influences.pushes[p];
+            found.by_pushes[p] +=
+                turn.impulse * dvec3(force_on(push, pass.time, at.positions[std::size_t(push.node)]));
         }
     }
 
-    At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass) const {
-        return reference::see(around_, pass, at, i);
+    At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass, const Turn& turn = {}) const {
+        return reference::see(around_, pass, at, i, turn.tips);
     }
     Node load(const NodeStates<Real>& from, std::size_t i) const { return reference::load(around_, from, i); }
     static void store(const Node& node, NodeStates<Real>& into, std::size_t i) {
