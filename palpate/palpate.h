@@ -21,6 +21,7 @@
 #include "palpate/body/cloth.h"
 #include "palpate/body/collider.h"
 #include "palpate/body/dent.h"
+#include "palpate/body/edit.h"
 #include "palpate/body/embedding.h"
 #include "palpate/body/feel.h"
 #include "palpate/body/hull.h"

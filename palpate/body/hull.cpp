@@ -69,4 +69,10 @@ Mesh hull_mesh(const Body& body) {
     return mesh;
 }
 
+void spread_area(Body& body) {
+    body.area.assign(body.count(), body.cells.empty() ? body.spacing * body.spacing : 0);
+    for (const HullTriangle& triangle : hull(body))
+        for (int node : triangle.nodes) body.area[node] += body.spacing * body.spacing / 6;
+}
+
 }  // namespace palpate

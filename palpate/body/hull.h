@@ -18,6 +18,10 @@ struct HullTriangle {
 /// lie turned, or be its own mirror image.
 std::vector<HullTriangle> hull(const Body& body);
 
+/// Sets the part of the outside that each node stands for: a third of each hull triangle at it; of a body
+/// without cells a square of its grid.
+void spread_area(Body& body);
+
 /// The hull as a surface, with sharp edges: a node on an edge or a corner gives one vertex for each
 /// direction.
 Mesh hull_mesh(const Body& body);

@@ -114,14 +114,6 @@ void weigh(Body& body, const Material& material, bool equal, double volume) {
         body.inverse_mass[i] = total > 0 ? float(parts / (total * part[i])) : 0;
 }
 
-// How much of the outside each node stands for: a third of each hull triangle at it. Where no cell is filled,
-// all is outside: a square of the spacing each.
-void spread_area(Body& body) {
-    body.area.assign(body.count(), body.cells.empty() ? body.spacing * body.spacing : 0);
-    for (const HullTriangle& triangle : hull(body))
-        for (int node : triangle.nodes) body.area[node] += body.spacing * body.spacing / 6;
-}
-
 // One of two numbers must be above zero, the other 0.
 bool is_one(float a, float b) { return a >= 0 && b >= 0 && (a > 0) != (b > 0) && std::isfinite(a + b); }
 

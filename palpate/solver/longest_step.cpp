@@ -28,25 +28,25 @@ double LongestStep::under(const Influences& influences) {
 }
 
 double LongestStep::find(const ToolStiffness& tools) const {
-    const Integrator integrator = simulation_.integrator;
-    const double frequency = touched_frequency(body_, frequency_, tools.contact, tools.pull);
-    const double bound = longest_step(integrator, frequency, body_.damping, body_.link_damping),
-                 automatic = automatic_step(integrator, frequency, body_.damping, body_.link_damping);
-    const std::string where = name_in_errors(body_);
-    if (simulation_.step > bound && !simulation_.force)
+    const Integrator integrator = simulation_->integrator;
+    const double frequency = touched_frequency(*body_, frequency_, tools.contact, tools.pull);
+    const double bound = longest_step(integrator, frequency, body_->damping, body_->link_damping),
+                 automatic = automatic_step(integrator, frequency, body_->damping, body_->link_damping);
+    const std::string where = name_in_errors(*body_);
+    if (simulation_->step > bound && !simulation_->force)
         throw Error(fmt::format("a step of {:.4g} s is above {}'s stability bound of {:.4g} s",
-                                simulation_.step, name_of(integrator), bound),
+                                simulation_->step, name_of(integrator), bound),
                     where, "use step = \"auto\" or a shorter one, or --force to see it blow up");
-    if (simulation_.step <= 0 && !(bound > 0))
+    if (simulation_->step <= 0 && !(bound > 0))
         throw Error(fmt::format("{} is stable at no step without damping", name_of(integrator)), where,
                     "choose verlet, which needs none");
-    const double step = simulation_.step > 0 ? simulation_.step : automatic;
-    if (step >= simulation_.shortest_step) return step;
+    const double step = simulation_->step > 0 ? simulation_->step : automatic;
+    if (step >= simulation_->shortest_step) return step;
     throw Error(fmt::format("{} would need {:.0f} steps of {:.3g} s for a frame of 1/60 s",
                             name_of(integrator), frame_seconds / step, step),
                 where,
                 step < automatic ? fmt::format("ask for longer steps: up to {:.3g} s are stable", bound)
-                                 : how_to_lengthen_steps(body_, simulation_, frequency_, tools));
+                                 : how_to_lengthen_steps(*body_, *simulation_, frequency_, tools));
 }
 
 }  // namespace palpate

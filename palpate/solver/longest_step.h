@@ -21,7 +21,7 @@ class LongestStep {
  public:
     /// `frequency`: the body's highest, rad/s. Body and simulation have to outlive it.
     LongestStep(const Body& body, const Simulation& simulation, double frequency)
-        : body_(body), simulation_(simulation), frequency_(frequency) {}
+        : body_(&body), simulation_(&simulation), frequency_(frequency) {}
 
     /// s. Throws Error where the step that was asked for is above the bound, without Simulation::force; where
     /// the integrator has no bound; and where steps would be shorter than Simulation::shortest_step.
@@ -35,8 +35,8 @@ class LongestStep {
         double step;
     };
 
-    const Body& body_;
-    const Simulation& simulation_;
+    const Body* body_;
+    const Simulation* simulation_;
     double frequency_;
     std::optional<Found> last_;
 };

@@ -28,6 +28,13 @@ class Machine {
  public:
     virtual ~Machine() = default;
 
+    /// These nodes' springs, masses or outsides are others now, which the body says. False, and nothing has
+    /// changed, where it cannot lay them where they lie.
+    virtual bool change(std::span<const int> nodes) {
+        static_cast<void>(nodes);
+        return false;
+    }
+
     /// Runs all passes of a call.
     virtual Findings run(const Call& call) = 0;
 

@@ -53,7 +53,8 @@ Solver::Solver(const Body& body, const Simulation& simulation, double frequency,
       simulation_(simulation),
       scheme_(scheme(simulation.integrator)),
       frequency_(frequency),
-      machine_(make(body_, simulation_)),
+      make_(make),
+      machine_(make_(body_, simulation_)),
       guides_(body_) {}
 
 Solver::~Solver() = default;
@@ -149,6 +150,27 @@ void Solver::restore(const State& state) {
         lag_ = 0;
     }
     shown_ = false;
+}
+
+BodyChange Solver::change(const Edit& edit) {
+    const State before = save();
+    const BodyChange change = apply(body_, edit);
+    frequency_ = highest_frequency(body_);
+    longest_ = LongestStep(body_, simulation_, frequency_);
+    State now{.positions = {}, .velocities = {}, .lag = before.lag};
+    for (int node : change.node_before) {
+        now.positions.push_back(before.positions[std::size_t(node)]);
+        now.velocities.push_back(before.velocities[std::size_t(node)]);
+    }
+    guides_ = Guides(body_);
+    guides_.stand(now);
+    before_.reset();
+    shown_ = false;
+    if (change.same_nodes() && machine_->change(change.nodes)) return change;
+    machine_.reset();  // before the next, so that memory for one is enough
+    machine_ = make_(body_, simulation_);
+    machine_->put(now);
+    return change;
 }
 
 std::size_t Solver::memory() const { return machine_->memory(); }

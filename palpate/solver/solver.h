@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/body/body.h"
+#include "palpate/body/edit.h"
 #include "palpate/body/influences.h"
 #include "palpate/body/nodes.h"
 #include "palpate/body/simulation.h"
@@ -90,6 +90,13 @@ class Solver final {
     /// Error if it is of another number of nodes.
     void restore(const State& state);
 
+    /// Cuts springs and cells out of the body while it moves (body/edit.h). The state of all nodes that are
+    /// left stays to the bit, and memory is laid anew only for what changed, as far as the machine can. What
+    /// was before cannot be put back by undo(). Throws Error, and nothing has changed, as apply() does.
+    BodyChange change(const Edit& edit);
+
+    const Body& body() const { return body_; }
+
     /// Bytes that the moving state and the springs take on this machine.
     std::size_t memory() const;
 
@@ -101,11 +108,12 @@ class Solver final {
     };
     std::vector<dvec3> velocities_now() const;
 
-    const Body body_;
+    Body body_;
     const Simulation simulation_;
     const Scheme& scheme_;
-    const double frequency_;  // rad/s, the highest of the body with nothing touching it
+    double frequency_;  // rad/s, the highest of the body with nothing touching it
     mutable LongestStep longest_{body_, simulation_, frequency_};
+    const MakeMachine make_;
     std::unique_ptr<Machine> machine_;
     Guides guides_;
     double lag_ = 0;                                 // s, how far the velocities are behind the positions

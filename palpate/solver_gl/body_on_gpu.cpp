@@ -49,21 +49,24 @@ void put(std::optional<gl::Field>& to, const std::vector<vec4>& values) {
         to->put(std::as_bytes(std::span(values)));
 }
 
-std::vector<uvec4> traits_of(const Body& body, const Placement& placement) {
-    std::vector<uvec4> traits(std::size_t(placement.slots), uvec4(0));
-    const GridSprings* stencil = placement.grid ? body.grid() : nullptr;
-    for (std::size_t i = 0; i < body.count(); ++i) {
-        uvec4& trait = traits[std::size_t(placement.slot[i])];
-        trait.z = std::bit_cast<unsigned>(body.area[i]);
-        trait.w = std::bit_cast<unsigned>(body.cover[i]);
-        for (std::size_t l = 0; stencil && l < stencil->links.size(); ++l) {
-            const auto quarters = unsigned(stencil->quarters(i, l));
-            if (stencil->in_quarters())
-                trait[l < 10 ? 0 : 1] |= quarters << 3 * (l % 10);
-            else
-                trait.x |= quarters / 4 << l;
-        }
+// Shares in two words, and the outside.
+uvec4 traits_of(const Body& body, bool in_grid, std::size_t node) {
+    uvec4 trait(0, 0, std::bit_cast<unsigned>(body.area[node]), std::bit_cast<unsigned>(body.cover[node]));
+    const GridSprings* stencil = in_grid ? body.grid() : nullptr;
+    for (std::size_t l = 0; stencil && l < stencil->links.size(); ++l) {
+        const auto quarters = unsigned(stencil->quarters(node, l));
+        if (stencil->in_quarters())
+            trait[l < 10 ? 0 : 1] |= quarters << 3 * (l % 10);
+        else
+            trait.x |= quarters / 4 << l;
     }
+    return trait;
+}
+
+std::vector<uvec4> all_traits(const Body& body, const Placement& placement) {
+    std::vector<uvec4> traits(std::size_t(placement.slots), uvec4(0));
+    for (std::size_t i = 0; i < body.count(); ++i)
+        traits[std::size_t(placement.slot[i])] = traits_of(body, placement.grid, i);
     return traits;
 }
 
@@ -180,7 +183,8 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
 }
 
 BodyOnGpu::BodyOnGpu(const Body& body, const Simulation& simulation, const Placement& placement)
-    : traits_(field(GL_RGBA32UI, traits_of(body, placement))),
+    : traits_of_(all_traits(body, placement)),
+      traits_(field(GL_RGBA32UI, traits_of_)),
       ties_(ties_of(body, placement)),
       slots_(field(GL_R32I, placement.slot)),
       rim_(field(GL_R32I, placement.rim)),
@@ -193,6 +197,18 @@ BodyOnGpu::BodyOnGpu(const Body& body, const Simulation& simulation, const Place
       slot_of_(placement.slot),
       push_of_(std::size_t(placement.slots), 0),
       push_of_slots_(field(GL_R32I, push_of_)) {}
+
+bool BodyOnGpu::change(const Body& body, const Placement& placement, std::span<const int> nodes) {
+    for (int node : nodes) {
+        const bool was_outside = traits_of_[std::size_t(placement.slot[std::size_t(node)])].z != 0;
+        if (was_outside != (body.area[std::size_t(node)] > 0)) return false;
+    }
+    for (int node : nodes)
+        traits_of_[std::size_t(placement.slot[std::size_t(node)])] =
+            gpu::traits_of(body, placement.grid, std::size_t(node));
+    traits_.put(std::as_bytes(std::span(traits_of_)));
+    return true;
+}
 
 void BodyOnGpu::bind() const {
     traits_.bind(traits_unit);

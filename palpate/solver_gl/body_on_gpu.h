@@ -21,6 +21,10 @@ class BodyOnGpu {
  public:
     BodyOnGpu(const Body& body, const Simulation& simulation, const Placement& placement);
 
+    /// These nodes' springs and outsides are others now. False, and nothing has changed, if one that was
+    /// inside lies outside now, or the other way round.
+    bool change(const Body& body, const Placement& placement, std::span<const int> nodes);
+
     /// Binds it for the shaders of this body; their samplers, and the block of the pass.
     void bind() const;
 
@@ -47,6 +51,7 @@ class BodyOnGpu {
     std::size_t bytes() const;
 
  private:
+    std::vector<uvec4> traits_of_;  // of slots, as in
     gl::Field traits_, ties_, slots_, rim_;
     gl::Field corners_, distances_, grids_;
     std::vector<int> guide_;  // of each node

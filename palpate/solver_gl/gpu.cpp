@@ -79,6 +79,15 @@ class Gpu final : public Machine {
 
     ~Gpu() override { context_.make_current_or_not(); }
 
+    // Masses lie with the places: what is in them is put where it was.
+    bool change(std::span<const int> nodes) override {
+        if (!placement_.grid || body_.terms.size() != 1) return false;
+        const State now = get();
+        if (!on_gpu_.change(body_, placement_, nodes)) return false;
+        put(now);
+        return true;
+    }
+
     Findings run(const Call& call) override {
         context_.make_current();
         const gl::Visit visit;

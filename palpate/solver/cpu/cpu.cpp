@@ -30,6 +30,8 @@ class Cpu final : public Machine {
         share_out();
     }
 
+    bool change(std::span<const int> nodes) override { return laid_.change(body_, nodes); }
+
     Findings run(const Call& call) override {
         for (const Guide& guide : call.guides) set_velocity(std::size_t(guide.node), guide.velocity);
         Findings found = go(call);

@@ -118,9 +118,9 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
     view_.rest_bounds = rest_bounds_.data();
     view_.furthest_cover = furthest_cover_.data();
     view_.offsets = layout_.offsets.data();
-    view_.inverse_mass = spread(body.inverse_mass);
-    view_.area = spread(body.area);
-    view_.cover = spread(body.cover);
+    view_.inverse_mass = inverse_mass_ = spread(body.inverse_mass);
+    view_.area = area_ = spread(body.area);
+    view_.cover = cover_ = spread(body.cover);
     float* rest[3] = {keep(), keep(), keep()};
     for (std::size_t i = 0; i < body.count(); ++i)
         for (int k = 0; k < 3; ++k) rest[k][layout_.slot[i]] = body.positions[i][k];
@@ -132,17 +132,12 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
 void LaidBody::lay_grid(const Body& body) {
     const GridSprings& stencil = *body.grid();
     const bool quarters = in_quarters(view_.springs);
-    const std::size_t per_word = quarters ? 10 : 32;
     for (int w = 0; w < (quarters ? 2 : 1); ++w) {
         words_.emplace_back(layout_, arrays_++);
         bytes_ += words_.back().bytes();
         view_.words[w] = words_.back().data();
     }
-    for (std::size_t i = 0; i < body.count(); ++i)
-        for (std::size_t l = 0; l < stencil.links.size(); ++l) {
-            const unsigned share = unsigned(stencil.quarters(i, l)), bit = unsigned(l % per_word);
-            words_[l / per_word].data()[layout_.slot[i]] |= quarters ? share << 3 * bit : share / 4 << bit;
-        }
+    for (std::size_t i = 0; i < body.count(); ++i) lay_shares(body, i);
     std::vector<float> half(body.count(), 0.5f);
     for (std::size_t i = 0; i < stencil.strength.size(); ++i) half[i] *= stencil.strength[i];
     const bool varies = view_.springs == Springs::lattice_with_strength ||
@@ -162,8 +157,37 @@ void LaidBody::let_neighbours_see(Fields& state) {
     if (damped_) state.speeds = four_a_slot();
 }
 
+void LaidBody::lay_shares(const Body& body, std::size_t node) {
+    const GridSprings& stencil = *body.grid();
+    const bool quarters = in_quarters(view_.springs);
+    const std::size_t per_word = quarters ? 10 : 32;
+    const int slot = layout_.slot[node];
+    for (auto& word : words_) word.data()[slot] = 0;
+    for (std::size_t l = 0; l < stencil.links.size(); ++l) {
+        const unsigned share = unsigned(stencil.quarters(node, l)), bit = unsigned(l % per_word);
+        words_[l / per_word].data()[slot] |= quarters ? share << 3 * bit : share / 4 << bit;
+    }
+}
+
+bool LaidBody::change(const Body& body, std::span<const int> nodes) {
+    if (view_.springs == Springs::table || body.terms.size() != 1) return false;
+    if (!in_quarters(view_.springs) && !whole(*body.grid())) return false;
+    for (int node : nodes) {
+        const auto i = std::size_t(node);
+        const int slot = layout_.slot[i];
+        lay_shares(body, i);
+        inverse_mass_[slot] = body.inverse_mass[i];
+        area_[slot] = body.area[i];
+        cover_[slot] = body.cover[i];
+    }
+    bound_blocks(body);
+    view_.rest_bounds = rest_bounds_.data();
+    view_.furthest_cover = furthest_cover_.data();
+    return true;
+}
+
 void LaidBody::bound_blocks(const Body& body) {
-    rest_bounds_.resize(layout_.blocks.size());
+    rest_bounds_.assign(layout_.blocks.size(), {});
     furthest_cover_.assign(layout_.blocks.size(), 0);
     for (std::size_t i = 0; i < body.count(); ++i) {
         const auto after =
@@ -181,7 +205,7 @@ float* LaidBody::keep() {
     return floats_.back().data();
 }
 
-const float* LaidBody::spread(const std::vector<float>& of_nodes) {
+float* LaidBody::spread(const std::vector<float>& of_nodes) {
     float* to = keep();
     for (std::size_t i = 0; i < of_nodes.size(); ++i) to[layout_.slot[i]] = of_nodes[i];
     return to;

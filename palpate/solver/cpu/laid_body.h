@@ -14,6 +14,10 @@ class LaidBody {
     LaidBody(const LaidBody&) = delete;
     LaidBody& operator=(const LaidBody&) = delete;
 
+    /// Lays these nodes' numbers anew. False, and nothing has changed, where their springs want another
+    /// kernel.
+    bool change(const Body& body, std::span<const int> nodes);
+
     const Layout& layout() const { return layout_; }
     const Laid& view() const { return view_; }
     /// One float a slot, for whoever needs more of them.
@@ -26,8 +30,9 @@ class LaidBody {
     LaidBody(const Body& body, const Simulation& simulation, int lanes,
              const std::pair<Springs, std::vector<vec3>>& springs);
     void lay_grid(const Body& body);
+    void lay_shares(const Body& body, std::size_t node);
     void bound_blocks(const Body& body);
-    const float* spread(const std::vector<float>& of_nodes);
+    float* spread(const std::vector<float>& of_nodes);
     float* keep();
 
     Layout layout_;
@@ -41,6 +46,7 @@ class LaidBody {
     std::vector<float> furthest_cover_;  // of blocks
     std::vector<vec3> corners_;
     std::vector<const DistanceField*> fields_;
+    float *inverse_mass_ = nullptr, *area_ = nullptr, *cover_ = nullptr;  // of slots, as in
     Laid view_{};
 };
 

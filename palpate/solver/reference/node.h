@@ -18,7 +18,9 @@ struct Surroundings {
     std::span<const NodePush> pushes = {};          // one a node,
     std::vector<int> push_of = {};                  // and the number of each node's, or -1
 
-    explicit Surroundings(const Body& of) : body(of), springs(table(of)) {
+    explicit Surroundings(const Body& of) : body(of) { lay_springs(); }
+    void lay_springs() {
+        springs = table(body);
         for (std::size_t t = 0; t < springs.ties.size(); ++t)
             if (int& to = springs.ties[t].to; to < 0) to = int(t) / springs.width;
     }

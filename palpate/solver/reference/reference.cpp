@@ -24,6 +24,11 @@ class Reference final : public Machine {
             if (needs(scheme(simulation.integrator), where)) states_[where] = begin;
     }
 
+    bool change(std::span<const int>) override {
+        around_.lay_springs();
+        return true;
+    }
+
     Findings run(const Call& call) override {
         Findings found{.by_presses = std::vector<dvec3>(call.influences.presses.size()),
                        .by_pushes = std::vector<dvec3>(call.influences.pushes.size())};
