@@ -17,7 +17,7 @@
 //   longest(l)         ten times its rest length, squared, m^2
 //   origin()           what this node's position counts from: the world's, or its own place at rest, m
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
-//   tip(i)             the Tip i
+//   tip(i)             the RoundTip i
 //   push(), push_target(), push_stiffness()   what pushes this node: a force, N; where a spring draws it, m; its stiffness
 //   corner(i)          corner i of all polygons, m
 //   distance_at(i, p), uphill_at(i, p)   field i at p: the distance, m, and which way it grows
@@ -83,7 +83,7 @@ ASIDE Real3 outward(Real3 position) {
 
 // A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
 FN Real3 tip_force(Real3 position, int i) {
-    Tip t = tip(i);
+    RoundTip t = tip(i);
     Real3 away = origin() + position - xyz(t.place);
     Real square = squared(away);
     Real inverse = inversesqrt(square);

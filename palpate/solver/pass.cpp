@@ -76,7 +76,7 @@ Pass make_pass(const Body& body, const Simulation& simulation) {
     return pass;
 }
 
-void place_tips(std::vector<Tip>& tips, const Influences& influences, double time) {
+void place_tips(std::vector<RoundTip>& tips, const Influences& influences, double time) {
     tips.clear();
     for (const Press& press : influences.presses)
         tips.push_back({vec4(press.centre + float(time) * press.velocity, press.radius),

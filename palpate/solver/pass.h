@@ -17,7 +17,7 @@ namespace palpate {
 Pass make_pass(const Body& body, const Simulation& simulation);
 
 /// The tips where they are `time` seconds into the call.
-void place_tips(std::vector<Tip>& tips, const Influences& influences, double time);
+void place_tips(std::vector<RoundTip>& tips, const Influences& influences, double time);
 
 /// Puts the obstacles where they are `time` seconds into the call.
 void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time);

@@ -23,7 +23,7 @@ struct Obstacle {
 };
 
 // A round tip that presses, where it is in this pass. There may be any number, so they lie beside the Pass.
-struct Tip {
+struct RoundTip {
     vec4  place;       // centre; radius
     vec4  push;        // x: pressure for each metre of depth, Pa/m
 };

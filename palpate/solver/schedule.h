@@ -22,7 +22,7 @@ struct Turn {
     bool opens;             // the first of a step
     bool ends;              // the last of a call
     double impulse;         // s, over which its forces give momentum to the nodes
-    std::span<const Tip> tips = {};
+    std::span<const RoundTip> tips = {};
 };
 
 /// One call of Solver::step, as every machine goes through it.
@@ -42,7 +42,7 @@ struct Call {
     template <class Run>
     void for_each_pass(Run run) const {
         Pass pass = constant;
-        std::vector<Tip> tips;
+        std::vector<RoundTip> tips;
         for (int i = 0; i < steps; ++i) {
             double reached = 0;  // by the last stage, in steps
             Where at = current;

@@ -261,9 +261,9 @@ void BodyOnGpu::push(std::span<const NodePush> by_nodes, std::span<const NodePus
     pushes_->bind(pushes_unit);
 }
 
-void BodyOnGpu::place(std::span<const Tip> tips) {
+void BodyOnGpu::place(std::span<const RoundTip> tips) {
     std::vector<vec4> values;
-    for (const Tip& tip : tips) values.insert(values.end(), {tip.place, tip.push});
+    for (const RoundTip& tip : tips) values.insert(values.end(), {tip.place, tip.push});
     put(tips_, values);
     tips_->bind(tips_unit);
 }

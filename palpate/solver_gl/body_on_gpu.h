@@ -46,7 +46,7 @@ class BodyOnGpu {
     /// What pushes them during a call: all of each node together, and as it was handed in.
     void push(std::span<const NodePush> by_nodes, std::span<const NodePush> given);
     /// Where tips are in what runs next.
-    void place(std::span<const Tip> tips);
+    void place(std::span<const RoundTip> tips);
 
     std::size_t bytes() const;
 

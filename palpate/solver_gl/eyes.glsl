@@ -9,7 +9,7 @@ layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs writt
 layout(binding = guides_unit) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
 layout(binding = corners_unit) uniform samplerBuffer corners;   // of polygons
 layout(binding = distances_unit) uniform samplerBuffer distances; // of fields, one after the other
-layout(binding = tips_unit) uniform samplerBuffer tips;        // in pairs: as a Tip
+layout(binding = tips_unit) uniform samplerBuffer tips;        // in pairs: as a RoundTip
 layout(binding = push_of_unit) uniform isamplerBuffer push_of; // of a slot: the number of its push, from 1 on; 0: none
 layout(binding = pushes_unit) uniform samplerBuffer pushes;    // in threes: where to, N/m; velocity, and a slot; force
 layout(binding = grids_unit) uniform samplerBuffer grids;     // of fields, in pairs: origin and spacing; dims and first distance
@@ -69,7 +69,7 @@ vec3 passing(vec3 v, int l) { return velocity_of(at(velocities, other(l))) - v; 
 vec3 origin() { return vec3(0); }
 float area() { return uintBitsToFloat(trait.z); }
 float cover() { return uintBitsToFloat(trait.w); }
-Tip tip(int i) { return Tip(texelFetch(tips, 2 * i), texelFetch(tips, 2 * i + 1)); }
+RoundTip tip(int i) { return RoundTip(texelFetch(tips, 2 * i), texelFetch(tips, 2 * i + 1)); }
 vec4 push_part(int part) {
     int number = texelFetch(push_of, id).x;
     return number > 0 ? texelFetch(pushes, 3 * (number - 1) + part) : vec4(0);

@@ -59,7 +59,7 @@ struct Eyes {
     FN Pack3 origin() const { return load(body.rest_x, body.rest_y, body.rest_z, id); }
     FN Pack area() const { return load(body.area + id); }
     FN Pack cover() const { return load(body.cover + id); }
-    Tip tip(int i) const { return sweep.turn.tips[std::size_t(i)]; }
+    RoundTip tip(int i) const { return sweep.turn.tips[std::size_t(i)]; }
     FN Pack3 push() const {
         const Pushes& p = *sweep.pushes;
         return load(p.force_x, p.force_y, p.force_z, id);

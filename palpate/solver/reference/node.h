@@ -47,7 +47,7 @@ struct SeeingNode {
     int id;
     const Tie* ties;  // this node's springs
     Real outside_area, outside_cover;
-    std::span<const Tip> tips;
+    std::span<const RoundTip> tips;
 
     Real3 toward(Real3 p, int l) const { return now.positions[std::size_t(ties[l].to)] - p; }
     Real3 passing(Real3 v, int l) const { return now.velocities[std::size_t(ties[l].to)] - v; }
@@ -59,7 +59,7 @@ struct SeeingNode {
     Real3 origin() const { return Real3(0); }
     Real area() const { return outside_area; }
     Real cover() const { return outside_cover; }
-    Tip tip(int i) const { return tips[std::size_t(i)]; }
+    RoundTip tip(int i) const { return tips[std::size_t(i)]; }
     const NodePush* own_push() const {
         const int number = world.push_of[std::size_t(id)];
         return number < 0 ? nullptr : &world.pushes[std::size_t(number)];
@@ -93,7 +93,7 @@ struct SeeingNode {
 /// Node `i` among the others at `now`.
 template <class Real>
 SeeingNode<Real> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now, std::size_t i,
-                     std::span<const Tip> tips = {}) {
+                     std::span<const RoundTip> tips = {}) {
     return {all,
             pass,
             now,
