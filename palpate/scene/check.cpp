@@ -280,7 +280,6 @@ void check(Scene& scene, const SceneSource& source) {
         check_name(scene.tools[i].name, scene.tools[i].lines, source);
         check(scene.tools[i], bodies, source);
     }
-    if (scene.tools.size() > 8) source.fail(scene.tools[8].lines.table, "more than 8 tools", "use fewer");
     if (scene.colliders.size() > 16)
         source.fail(scene.colliders[16].lines.table, "more than 16 colliders", "use fewer");
     check(scene.camera, names, source);
