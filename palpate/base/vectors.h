@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include <limits>
+#include <span>
 
 namespace palpate {
 
@@ -35,5 +36,12 @@ struct Bounds {
         high = glm::max(high, p);
     }
 };
+
+/// Around points.
+inline Bounds bounds(std::span<const vec3> points) {
+    Bounds box;
+    for (vec3 p : points) box.include(p);
+    return box;
+}
 
 }  // namespace palpate

@@ -86,12 +86,6 @@ std::string base64(const std::string& bytes) {
 
 }  // namespace
 
-Bounds box_of(std::span<const vec3> points) {
-    Bounds box{points[0], points[0]};
-    for (vec3 p : points) box.include(p);
-    return box;
-}
-
 vec3 gltf_normal(vec3 normal) {
     const float length = glm::length(normal);
     if (std::abs(length - 1) < 1e-4f) return normal;
@@ -102,7 +96,7 @@ GltfContents gltf_contents(const Mesh& mesh, const std::string& file) {
     if (mesh.triangles.empty() || mesh.positions.empty())
         throw Error("no triangles to write, which glTF cannot say", file, "use .ply");
     GltfContents contents{
-        mesh.positions.size(), mesh.triangles.size(), !mesh.normals.empty(), box_of(mesh.positions), {}, {}};
+        mesh.positions.size(), mesh.triangles.size(), !mesh.normals.empty(), bounds(mesh), {}, {}};
     if (contents.rest_bytes() > gltf_limit)
         throw Error("a mesh of more than 2 GB", file, "use .ply, or simplify it");
     return contents;

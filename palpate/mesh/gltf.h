@@ -39,9 +39,6 @@ std::string gltf_binary(const Mesh& mesh);
 /// A normal as glTF allows it: unit.
 vec3 gltf_normal(vec3 normal);
 
-/// The box around points, of which there is one at least; right whatever their size.
-Bounds box_of(std::span<const vec3> points);
-
 /// The JSON that describes the binary part, which is found at `uri`; in a GLB there is none.
 std::string gltf_json(const GltfContents& contents, const std::string& uri = "");
 

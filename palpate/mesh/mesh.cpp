@@ -41,12 +41,6 @@ float metres(Units units) {
     return 1;
 }
 
-Bounds bounds(const Mesh& mesh) {
-    Bounds box;
-    for (vec3 p : mesh.positions) box.include(p);
-    return box;
-}
-
 double volume(const Mesh& mesh) {
     // Any point serves as the tip of the tetrahedra; one amid them keeps the terms small.
     const dvec3 tip = mesh.positions.empty() ? dvec3(0) : dvec3(bounds(mesh).centre());

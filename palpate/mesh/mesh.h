@@ -33,7 +33,7 @@ float metres(Units units);
 /// one another, or a vertex is at a place that is not finite. `where`: what the message calls it.
 void check(const Mesh& mesh, std::string_view where);
 
-Bounds bounds(const Mesh& mesh);
+inline Bounds bounds(const Mesh& mesh) { return bounds(mesh.positions); }
 
 /// Enclosed volume in m³ (divergence theorem, summed in double); negative if the mesh is inside out.
 double volume(const Mesh& mesh);

@@ -180,7 +180,7 @@ class Morphs : public Sequence {
         contents_.times.push_back(float(time));
         std::vector<vec3> ways(positions.begin(), positions.end());
         for (std::size_t i = 0; i < ways.size(); ++i) ways[i] -= rest_.positions[i];
-        contents_.moves.push_back(box_of(ways));
+        contents_.moves.push_back(bounds(ways));
         file_.write(std::span<const vec3>(ways));
         if (!contents_.normals) return;
         for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = gltf_normal(normals[i]) - rest_.normals[i];

@@ -1,11 +1,11 @@
 #include "palpate/run/framing.h"
 
+#include "palpate/run/bounding_box.h"
 #include "palpate/run/tip.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
 
 namespace palpate {
 namespace {
@@ -16,12 +16,6 @@ constexpr float near = 0.5f, reach = 2, fall = 6;
 constexpr float margin = 1.1f;  // times as much as has to be seen
 
 using Points = std::vector<vec3>;
-
-Bounds bounds_of(const Points& points) {
-    Bounds box;
-    for (vec3 p : points) box.include(p);
-    return box;
-}
 
 bool holds(const Bounds& box, vec3 p) { return glm::clamp(p, box.low, box.high) == p; }
 
@@ -60,31 +54,6 @@ Points subjects(const Scene& scene, const Models& made) {
                                  turn(waypoint.rotation) * (rest[std::size_t(node)] - moved.about));
     }
     return points;
-}
-
-// A collider's shape as points with so much around them, m; a plane has none.
-struct Solid {
-    Points points;
-    float around = 0;
-};
-Solid solid(const Plane&) { return {}; }
-Solid solid(const Sphere& sphere) { return {{sphere.centre}, sphere.radius}; }
-Solid solid(const Capsule& capsule) { return {{capsule.from, capsule.to}, capsule.radius}; }
-Solid solid(const Box& box) {
-    Solid all{{}, box.rounding};
-    for (vec3 corner : corners({-box.half, box.half}))
-        all.points.push_back(box.centre + mat3(box.axes[0], box.axes[1], box.axes[2]) * corner);
-    return all;
-}
-Solid solid(const Polygon& polygon) {
-    Solid all;
-    for (const auto& triangle : polygon.triangles)
-        all.points.insert(all.points.end(), triangle.begin(), triangle.end());
-    return all;
-}
-Solid solid(const DistanceField& field) {
-    const auto all = corners({field.origin, field.origin + field.spacing * vec3(field.dims - 1)});
-    return {{all.begin(), all.end()}, 0};
 }
 
 // Where a collider is in the course of time.
@@ -136,7 +105,7 @@ struct Seen {
     Bounds near_, reach_;
 };
 
-Seen::Seen(const Scene& scene, const Models& made) : points(subjects(scene, made)), box(bounds_of(points)) {
+Seen::Seen(const Scene& scene, const Models& made) : points(subjects(scene, made)), box(bounds(points)) {
     if (box.empty()) near_ = reach_ = {vec3(-1e6f), vec3(1e6f)};  // then all the rest is what there is
     if (!box.empty()) {
         const float size = glm::length(box.size());
@@ -152,7 +121,7 @@ Seen::Seen(const Scene& scene, const Models& made) : points(subjects(scene, made
     }
     add_colliders(scene, made);
     add_tips(scene, made);
-    if (box.empty()) box = bounds_of(points);
+    if (box.empty()) box = bounds(points);
 }
 
 // As much of it as is near, and its nearest point.
@@ -180,10 +149,14 @@ void Seen::add_colliders(const Scene& scene, const Models& made) {
         for (const Pose& at : poses(scene.colliders[c], made.pivots[c])) {
             const auto& shape = made.simulation.colliders[c].shape;
             if (const auto* plane = std::get_if<Plane>(&shape)) add(*plane, at);
-            const Solid rest = std::visit([](const auto& one) { return solid(one); }, shape);
+            const std::optional<Box> rest = bounding_box(made.simulation.colliders[c]);
+            if (!rest) continue;
             Bounds posed;
-            for (vec3 p : rest.points) posed.include(vec3(at.of(dvec3(p))));
-            if (!posed.empty()) add(grown(posed, rest.around));
+            for (vec3 corner : corners({-rest->half, rest->half})) {
+                const vec3 p = rest->centre + mat3(rest->axes[0], rest->axes[1], rest->axes[2]) * corner;
+                posed.include(vec3(at.of(dvec3(p))));
+            }
+            add(grown(posed, rest->rounding));
         }
 }
 
@@ -224,7 +197,7 @@ vec3 side(const Seen& seen, const mat3& axes) {
 // Where the eye is that looks along -`back` and sees all points, as near as it can: each edge of the picture
 // touches one of them, or the two that matter less leave room on both sides alike. `fixed`: what it looks at.
 Camera fitted(Camera camera, const Points& points, vec3 back, float aspect, std::optional<vec3> fixed) {
-    const vec3 middle = fixed.value_or(bounds_of(points).centre());
+    const vec3 middle = fixed.value_or(bounds(points).centre());
     vec3 aside = glm::cross(camera.up, back);
     if (glm::length(aside) < 1e-4f)
         aside = glm::cross(std::abs(back.z) < 0.7f ? vec3(0, 0, 1) : vec3(1, 0, 0), back);
@@ -253,7 +226,7 @@ std::optional<vec3> looked_at(const Scene& scene, const Models& made) {
     if (!name) return std::nullopt;
     std::optional<vec3> at;
     for (const Model& model : made.models)
-        if (model.body.name == *name) at = bounds_of(shown(model)).centre();
+        if (model.body.name == *name) at = bounds(shown(model)).centre();
     for (const Still& still : made.stills)
         if (still.name == *name) at = bounds(still.surface).centre();
     return at;
@@ -271,7 +244,7 @@ Camera camera_of(const Scene& scene, const Models& made, float aspect) {
     const Seen seen(scene, made);
     if (seen.points.empty()) return camera;
     if (!scene.camera.eye) return fitted(camera, seen.points, side(seen, upright(camera.up)), aspect, at);
-    camera.look_at = bounds_of(seen.points).centre();
+    camera.look_at = bounds(seen.points).centre();
     return camera;
 }
 

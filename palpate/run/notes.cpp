@@ -1,5 +1,6 @@
 #include "palpate/run/notes.h"
 
+#include "palpate/run/bounding_box.h"
 #include "palpate/run/run.h"
 
 #include <fmt/format.h>
@@ -19,26 +20,11 @@ bool has(const Scene& scene, ToolKind kind) {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-// Half the sides of an obstacle's box, the smallest first.
-vec3 half_sides(const Plane&) { return vec3(infinite); }
-vec3 half_sides(const Sphere& sphere) { return vec3(sphere.radius); }
-vec3 half_sides(const Capsule& capsule) {
-    const float long_side = capsule.radius + 0.5f * glm::distance(capsule.from, capsule.to);
-    return {capsule.radius, capsule.radius, long_side};
-}
-vec3 half_sides(const Box& box) { return box.half + box.rounding; }
-vec3 half_sides(const Polygon& polygon) {
-    Bounds box;
-    for (const auto& corners : polygon.triangles)
-        for (vec3 p : corners) box.include(p);
-    return 0.5f * box.size();
-}
-// It reaches three cells beyond its mesh.
-vec3 half_sides(const DistanceField& field) { return 0.5f * field.spacing * vec3(field.dims - 7); }
-
+// Half the sides of an obstacle's bounding box, the smallest first.
 vec3 half_sides(const Collider& collider) {
-    vec3 half =
-        std::visit([](const auto& shape) { return half_sides(shape); }, collider.shape) + collider.margin;
+    const std::optional<Box> box = bounding_box(collider);
+    if (!box) return vec3(infinite);
+    vec3 half = box->half + box->rounding + collider.margin;
     std::sort(&half.x, &half.x + 3);
     return half;
 }
@@ -123,9 +109,7 @@ void look_for_lost_bodies(const Scene& scene, const Models& made, const Play& pl
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const Body& body = made.models[m].body;
         if (!is_held(scene, made, m) || is_moved(made, m)) continue;
-        Bounds box;
-        for (vec3 p : body.positions) box.include(p);
-        const double size = glm::length(box.size());
+        const double size = glm::length(bounds(body.positions).size());
         const double way = glm::distance(middle(play.nodes(m).positions), middle(body.positions));
         if (way > far * size && size > 0)
             notes.push_back(

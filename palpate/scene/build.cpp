@@ -31,12 +31,6 @@ vec3 down(const Scene& scene) {
     return glm::length(gravity) > 0 ? glm::normalize(gravity) : vec3(0, -1, 0);
 }
 
-Bounds bounds_of(const std::vector<vec3>& points) {
-    Bounds box;
-    for (vec3 p : points) box.include(p);
-    return box;
-}
-
 // Reads a file that a scene names: an error about it says where the scene names it, and as what.
 template <class Read>
 auto reading(const Scene& scene, const std::string& whose, const Lines& lines, const std::string& key,
@@ -63,11 +57,11 @@ std::vector<int> chosen(const Body& body, const Choice& choice, const Scene& sce
     if (choice.near) add("near", nodes_near(body, *choice.near, choice.radius));
     if (choice.near && choice.radius == 0 && !all.empty()) {
         const float far = glm::distance(*choice.near, body.positions[std::size_t(all.back())]);
-        if (far > glm::length(bounds_of(body.positions).size()))
+        if (far > glm::length(bounds(body.positions).size()))
             notes.push_back(
                 fmt::format("{}: {}near is {:.3g} m from the nearest node; is it in m?", where, key, far));
     }
-    if (!choice.box.empty()) add("box", nodes_in(body, bounds_of(choice.box)));
+    if (!choice.box.empty()) add("box", nodes_in(body, bounds(choice.box)));
     for (int node : choice.nodes)
         if (node < 0 || node >= int(body.count()))
             throw Error(fmt::format("{}: {}nodes names node {}, and there are {} nodes", where, key, node,
