@@ -1,6 +1,5 @@
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "app/view.h"
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/pipe.h"
@@ -11,6 +10,7 @@
 #include "palpate/solver/solver.h"
 #include "palpate/touch/devices/script.h"
 #include "palpate/touch/loop.h"
+#include "palpate/viewer/show.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -152,7 +152,7 @@ Finding look_at_haptics() {
     return finding;
 }
 
-Finding look_at_window() { return {"window", "a display", {}, problem_of(check_view)}; }
+Finding look_at_window() { return {"window", "a display", {}, problem_of(check_window)}; }
 
 Finding look_at_films() {
     if (has_program("ffmpeg")) return {"films", "the program ffmpeg"};

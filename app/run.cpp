@@ -3,10 +3,10 @@
 #include "app/choice.h"
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "app/view.h"
 #include "palpate/base/error.h"
 #include "palpate/run/experiment.h"
 #include "palpate/run/notes.h"
+#include "palpate/viewer/show.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -151,8 +151,8 @@ void run_scene(RunArguments& arguments, const CLI::App& command) {
         throw Error("a recording is replayed as it is", arguments.scene,
                     "leave the other options out, but for --headless and --size");
     if (!arguments.headless && !wants_files(arguments))
-        return view(arguments.scene, arguments.changes, {arguments.settings.width, arguments.settings.height},
-                    arguments.settings.lattice);
+        return show(arguments.scene, arguments.changes,
+                    {{arguments.settings.width, arguments.settings.height}, arguments.settings.lattice});
     if (recorded) return replay(arguments.scene);
     Scene scene = read_scene(arguments.scene, arguments.changes);
     scene.simulation.force = arguments.force;

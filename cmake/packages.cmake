@@ -33,4 +33,8 @@ pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET GLOBAL tomlplusplus)  # its CMake file knows the headers alone
 palpate_needs(nlohmann_json)
 
+# viewer, which does without
+pkg_check_modules(imgui IMPORTED_TARGET GLOBAL imgui)
+pkg_check_modules(glfw IMPORTED_TARGET GLOBAL glfw3)
+
 set(CMAKE_MESSAGE_LOG_LEVEL "${palpate_log_level}")

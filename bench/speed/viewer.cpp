@@ -1,12 +1,12 @@
 // What a person sees of the scene "brain" while they pull at it and feel it: pictures a second of 1280 × 720,
 // and what each of them takes.
-#include "app/viewer/viewer.h"
+#include "palpate/viewer/viewer.h"
 
-#include "app/viewer/gui.h"
 #include "bench/speed/drawing.h"
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/gl/handle.h"
+#include "palpate/viewer/gui.h"
 
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>

@@ -1,13 +1,13 @@
 #include "palpate/run/experiment.h"
 
 #include "palpate/base/error.h"
+#include "palpate/body/select.h"
 #include "palpate/run/run.h"
 #include "palpate/solver/stability.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 
 namespace palpate {
@@ -76,6 +76,37 @@ Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& 
     return prepared;
 }
 
+Prepared prepare(Models models) {
+    Scene scene;
+    scene.simulation = models.simulation;
+    scene.simulation.colliders.clear();  // they are recipes there
+    for (const Model& model : models.models) {
+        BodyRecipe& recipe = scene.bodies.emplace_back();
+        recipe.name = model.body.name;
+        recipe.sheet = soundness(model.surface).open_edges > 0;
+    }
+    for (const Still& still : models.stills) {
+        BodyRecipe& recipe = scene.surfaces.emplace_back();
+        recipe.name = still.name;
+        recipe.sheet = soundness(still.surface).open_edges > 0;
+    }
+    for (const Collider& collider : models.simulation.colliders)
+        scene.colliders.emplace_back().collider = collider;
+    models.pivots.resize(scene.colliders.size(), vec3(0));
+    for (std::size_t i = 0; i < models.moves.size(); ++i) scene.moves.emplace_back().path = {Waypoint{}};
+    scene.name = scene.bodies.empty() ? "models" : scene.bodies.front().name;
+    return {{.text = {}, .name = scene.name, .folder = "."}, {}, std::move(scene), std::move(models)};
+}
+
+Prepared prepare(Body body, Mesh surface) {
+    if (body.name.empty()) body.name = "body";
+    if (surface.normals.empty()) compute_normals(surface);
+    Embedding embedding = embed(surface, body);
+    Models models;
+    models.models.push_back({std::move(body), std::move(surface), std::move(embedding), {}, {}});
+    return prepare(std::move(models));
+}
+
 Strength strength_for(const Body& body) {
     float lightest = 0, widest = 0;  // 1/kg, of the heaviest node; m²/kg
     for (std::size_t i = 0; i < body.count(); ++i) {
@@ -90,21 +121,7 @@ Strength strength_for(const Body& body) {
 
 // ---- what it is made of ----
 
-struct Experiment::Made {
-    std::vector<Change> changes;
-    std::unique_ptr<Scene> scene;
-    std::unique_ptr<Models> models;
-    std::unique_ptr<Report> report;
-    std::unique_ptr<Play> play;
-};
-
 namespace {
-
-// No two experiments of a program have the same.
-int number_of_new_shapes() {
-    static std::atomic<int> last = 0;
-    return ++last;
-}
 
 // Of bodies that are still what they were: it takes the longest to find out.
 std::vector<double> known_frequencies(const Models& models, const Models& before, const Play& play) {
@@ -123,108 +140,118 @@ std::vector<double> known_frequencies(const Models& models, const Models& before
 Experiment::Experiment(Prepared prepared, const gl::Context* context)
     : Experiment(std::move(prepared), context, nullptr) {}
 
-Experiment::Experiment(Prepared prepared, const gl::Context* context, const Experiment* other)
-    : source_(std::move(prepared.source)),
-      context_(context),
-      history_{prepared.changes},
-      shapes_(number_of_new_shapes()),
-      first_changes_(prepared.changes) {
-    take(put_together(prepared.changes, std::move(prepared.scene), std::move(prepared.models), other));
-}
-
-Experiment::Made Experiment::make(const std::vector<Change>& changes) const {
-    Scene scene = parse_scene(source_, changes);
-    Models models = rebuild(scene, *scene_, *models_);
-    return put_together(changes, std::move(scene), std::move(models), this);
-}
-
 // `other`: knows frequencies of bodies, perhaps of the same.
-Experiment::Made Experiment::put_together(const std::vector<Change>& changes, Scene scene, Models models,
-                                          const Experiment* other) const {
+Experiment::Experiment(Prepared prepared, const gl::Context* context, const Experiment* other)
+    : context_(context),
+      history_{{prepared.changes, {}}},
+      done_{std::move(prepared.source), prepared.changes, {}, 0, {}} {
+    records_ = has_text() && !other;
+    if (!has_text())
+        for (const Model& model : prepared.models.models) free_.push_back(model.body.inverse_mass);
+    take(put_together(std::move(prepared.scene), std::move(prepared.models), other));
+}
+
+void Experiment::require_text() const {
+    if (!has_text())
+        throw Error("no text of a scene, so nothing can be changed by a line, compared, saved or recorded",
+                    source().name, "pin its nodes; or describe it by a scene");
+}
+
+Experiment::Made Experiment::make(const Setting& setting) const {
+    if (has_text()) {
+        Scene scene = parse_scene(source(), setting.changes);
+        Models models = rebuild(scene, this->scene(), this->models());
+        return put_together(std::move(scene), std::move(models), this);
+    }
+    Models models = this->models();
+    for (std::size_t m = 0; m < models.models.size(); ++m) {
+        models.models[m].body.inverse_mass = free_[m];
+        if (m < setting.pinned.size()) palpate::pin(models.models[m].body, setting.pinned[m]);
+    }
+    return put_together(scene(), std::move(models), this);
+}
+
+Experiment::Made Experiment::put_together(Scene scene, Models models, const Experiment* other) const {
     scene.simulation.force = models.simulation.force = true;
-    Made made{.changes = changes,
-              .scene = std::make_unique<Scene>(std::move(scene)),
+    Made made{.scene = std::make_unique<Scene>(std::move(scene)),
               .models = std::make_unique<Models>(std::move(models)),
               .report = std::make_unique<Report>(),
               .play = nullptr};
     std::vector<double> known;
-    if (other) known = known_frequencies(*made.models, *other->models_, *other->play_);
+    if (other) known = known_frequencies(*made.models, other->models(), other->play());
     made.play = std::make_unique<Play>(*made.scene, *made.models, *made.report, context_, known);
     return made;
 }
 
 void Experiment::take(Made made) {
-    play_ = std::move(made.play);  // before what it refers to goes
-    scene_ = std::move(made.scene);
-    models_ = std::move(made.models);
-    report_ = std::move(made.report);
+    std::swap(made_, made);
     trouble_.clear();
 }
 
 // Bodies of the same nodes go on from where they are. A node that is held fast now has no speed.
 void Experiment::carry_over(Made& made) {
-    const std::vector<State> before = play_->save();
+    const std::vector<State> before = play().save();
     std::vector<State> states = made.play->save();
     for (std::size_t m = 0; m < states.size(); ++m) {
         const Body& body = made.models->models[m].body;
         for (std::size_t old = 0; old < before.size(); ++old)
-            if (same_nodes(models_->models[old].body, body)) states[m] = before[old];
+            if (same_nodes(models().models[old].body, body)) states[m] = before[old];
         for (std::size_t i = 0; i < body.count(); ++i)
             if (!(body.inverse_mass[i] > 0)) states[m].velocities[i] = dvec3(0);
     }
     made.play->restore(states);
     if (!fits(made)) return;
-    made.play->take_tools(*play_);
-    made.play->take_probes(*play_);
+    made.play->take_tools(play());
+    made.play->take_probes(*made_.play);
 }
 
 // Whether what its tools touch and hold is what they did.
 bool Experiment::fits(const Made& made) const {
-    const auto &now = made.models->models, &before = models_->models;
-    if (made.scene->tools != scene_->tools || now.size() != before.size()) return false;
+    const auto &now = made.models->models, &before = models().models;
+    if (made.scene->tools != scene().tools || now.size() != before.size()) return false;
     for (std::size_t m = 0; m < now.size(); ++m)
         if (!same_nodes(now[m].body, before[m].body) ||
             now[m].surface.triangles != before[m].surface.triangles)
             return false;
-    return made.models->stills.size() == models_->stills.size() &&
-           std::equal(
-               made.models->stills.begin(), made.models->stills.end(), models_->stills.begin(),
-               [](const Still& a, const Still& b) { return a.surface.triangles == b.surface.triangles; });
+    return std::ranges::equal(made.models->stills, models().stills, [](const Still& a, const Still& b) {
+        return a.surface.triangles == b.surface.triangles;
+    });
 }
 
-void Experiment::set(std::vector<Change> changes) {
-    Made made = make(changes);
+void Experiment::set(const Setting& setting) {
+    Made made = make(setting);
     carry_over(made);
-    if (!same_shapes(changes, history_[at_])) shapes_ = number_of_new_shapes();
+    if (!same_shapes(setting.changes, changes())) shapes_ = std::make_shared<char>();
     take(std::move(made));
-    record({recorded_, SetChanges{std::move(changes)}});
+    record({done_.frames, SetChanges{setting.changes}});
 }
 
 std::unique_ptr<Experiment> Experiment::beside(const std::vector<Change>& more) const {
-    Prepared prepared{source_, with(changes(), more), {}, {}};
-    prepared.scene = parse_scene(source_, prepared.changes);
-    prepared.models = rebuild(prepared.scene, *scene_, *models_);
+    require_text();
+    Prepared prepared{source(), with(changes(), more), {}, {}};
+    prepared.scene = parse_scene(source(), prepared.changes);
+    prepared.models = rebuild(prepared.scene, scene(), models());
     std::unique_ptr<Experiment> other(new Experiment(std::move(prepared), context_, this));
-    other->play_->restore(play_->save());
-    other->play_->take_tools(*play_);
+    other->made_.play->restore(play().save());
+    other->made_.play->take_tools(play());
     other->frame_ = frame_;
-    other->records_ = false;
     return other;
 }
 
 // ---- changes ----
 
 void Experiment::change(const std::vector<Change>& changes, bool again) {
-    const std::vector<Change> all = with(this->changes(), changes);
+    require_text();
+    const Setting all{with(this->changes(), changes), {}};
     set(all);
     if (again && at_ > 0) --at_;
     add_to_history(all);
 }
 
 // What was undone is gone.
-void Experiment::add_to_history(const std::vector<Change>& changes) {
+void Experiment::add_to_history(Setting setting) {
     history_.resize(at_ + 1);
-    history_.push_back(changes);
+    history_.push_back(std::move(setting));
     ++at_;
 }
 
@@ -241,53 +268,62 @@ void Experiment::redo() {
 }
 
 void Experiment::restart() {
-    Made made = make(changes());
-    take(std::move(made));
+    take(make(history_[at_]));
     frame_ = 0;
     good_.clear();
-    first_changes_ = changes();
-    inputs_.clear();
-    recorded_ = 0;
+    done_ = {source(), changes(), {}, 0, {}};
     replayed_ = 0;
 }
 
 void Experiment::return_to_good() {
     if (good_.empty()) return;
     const Good good = good_.front();
-    Made made = make(good.changes);
+    Made made = make(good.setting);
     made.play->restore(good.states);
-    if (fits(made)) made.play->take_tools(*play_);
-    if (!same_shapes(good.changes, changes())) shapes_ = number_of_new_shapes();
+    if (fits(made)) made.play->take_tools(play());
+    if (!same_shapes(good.setting.changes, changes())) shapes_ = std::make_shared<char>();
     take(std::move(made));
-    record({recorded_, ReturnToGood{}});
+    record({done_.frames, ReturnToGood{}});
     frame_ = good.frame;
-    if (good.changes != changes()) add_to_history(good.changes);
+    if (good.setting != history_[at_]) add_to_history(good.setting);
     good_ = {good};
 }
 
 void Experiment::pin(std::size_t body, const std::vector<int>& nodes, bool fast) {
-    const std::vector<float>& inverse_mass = models_->models[body].body.inverse_mass;
+    const std::vector<float>& inverse_mass = models().models[body].body.inverse_mass;
     std::vector<char> held(inverse_mass.size());
     for (std::size_t i = 0; i < held.size(); ++i) held[i] = !(inverse_mass[i] > 0);
-    for (const MovedNodes& moved : models_->moves)
+    for (const MovedNodes& moved : models().moves)
         if (moved.body == body)
             for (int node : moved.nodes) held[std::size_t(node)] = false;  // by the motion, not by a pin
-    for (int node : nodes) held[std::size_t(node)] = fast;
-    std::string list;
+    for (int node : nodes) {
+        if (!has_text() && !fast && !(free_[body][std::size_t(node)] > 0))
+            throw Error(fmt::format("node {} was made without a mass, so nothing can let go of it", node),
+                        "body " + models().models[body].body.name,
+                        "pin it here rather than where it is made");
+        held[std::size_t(node)] = fast;
+    }
+    std::vector<int> list;
     for (std::size_t i = 0; i < held.size(); ++i)
-        if (held[i]) list += fmt::format("{}{}", list.empty() ? "" : ",", i);
-    change({fmt::format("body.{}.pin={{nodes=[{}]}}", body + 1, list)});
+        if (held[i]) list.push_back(int(i));
+    if (has_text())
+        return change({fmt::format("body.{}.pin={{nodes=[{}]}}", body + 1, fmt::join(list, ","))});
+    Setting more = history_[at_];
+    more.pinned.resize(models().models.size());
+    more.pinned[body] = std::move(list);
+    set(more);
+    add_to_history(std::move(more));
 }
 
 bool Experiment::is_pinned(std::size_t body, int node) const {
-    return !(models_->models[body].body.inverse_mass[std::size_t(node)] > 0);
+    return !(models().models[body].body.inverse_mass[std::size_t(node)] > 0);
 }
 
 double Experiment::time() const { return double(frame_) * frame_seconds; }
 
 double Experiment::stable_step(std::size_t body) const {
-    const Body& of = models_->models[body].body;
-    return longest_step(models_->simulation.integrator, play_->frequency(body), of.damping, of.link_damping);
+    const Body& of = models().models[body].body;
+    return longest_step(models().simulation.integrator, play().frequency(body), of.damping, of.link_damping);
 }
 
 // ---- going on ----
@@ -295,28 +331,28 @@ double Experiment::stable_step(std::size_t body) const {
 bool Experiment::advance(const Hands& hands) {
     if (!trouble_.empty()) return false;
     if (frame_ % frames_between_good == 0) remember();
-    if (!hands.empty()) record({recorded_, hands});
-    ++recorded_;
-    if (!play_->advance(time(), frame_seconds, hands)) {
-        trouble_ = report_->notes.empty() ? "the motion blew up" : report_->notes.back();
+    if (!hands.empty()) record({done_.frames, hands});
+    ++done_.frames;
+    if (!made_.play->advance(time(), frame_seconds, hands)) {
+        trouble_ = report().notes.empty() ? "the motion blew up" : report().notes.back();
         return false;
     }
     ++frame_;
-    for (Report::Tool& tool : report_->tools)
+    for (Report::Tool& tool : made_.report->tools)
         if (tool.time.size() > most_samples) tool.time.clear(), tool.force.clear(), tool.indentation.clear();
     return true;
 }
 
 void Experiment::remember() {
-    good_.push_back({frame_, changes(), play_->save()});
+    good_.push_back({frame_, history_[at_], play().save()});
     if (good_.size() > most_good) good_.pop_front();
 }
 
 Energy Experiment::energy() const {
     Energy sum;
-    const std::vector<State> states = play_->states();
+    const std::vector<State> states = play().states();
     for (std::size_t m = 0; m < states.size(); ++m) {
-        const Energy one = palpate::energy(models_->models[m].body, states[m]);
+        const Energy one = palpate::energy(models().models[m].body, states[m]);
         sum.kinetic += one.kinetic;
         sum.elastic += one.elastic;
     }
@@ -326,31 +362,36 @@ Energy Experiment::energy() const {
 // ---- recordings ----
 
 void Experiment::record(Input input) {
-    if (records_ && inputs_.size() <= most_inputs) inputs_.push_back(std::move(input));
+    if (records_ && done_.inputs.size() <= most_inputs) done_.inputs.push_back(std::move(input));
 }
 
 Recording Experiment::recording() const {
-    if (inputs_.size() > most_inputs)
+    require_text();
+    if (done_.inputs.size() > most_inputs)
         throw Error("more inputs than a recording holds", "the experiment", "restart it to begin a new one");
-    return {source_, first_changes_, inputs_, recorded_, fingerprint()};
+    Recording all = done_;
+    all.fingerprint = fingerprint();
+    return all;
 }
 
 bool Experiment::replay(const Recording& recording) {
+    require_text();
     Hands hands;
-    for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= recorded_; ++replayed_) {
+    for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= done_.frames;
+         ++replayed_) {
         const auto& what = recording.inputs[replayed_].what;
         if (const auto* some = std::get_if<Hands>(&what)) {
             hands = *some;
         } else if (const auto* set_to = std::get_if<SetChanges>(&what)) {
-            set(set_to->changes);
-            add_to_history(set_to->changes);
+            set({set_to->changes, {}});
+            add_to_history({set_to->changes, {}});
         } else {
             return_to_good();
         }
     }
-    if (recorded_ >= recording.frames || !trouble_.empty()) return false;
+    if (done_.frames >= recording.frames || !trouble_.empty()) return false;
     if (!takes(hands))
-        throw Error(fmt::format("frame {} holds what no hand here can do", recorded_), "the recording",
+        throw Error(fmt::format("frame {} holds what no hand here can do", done_.frames), "the recording",
                     "replay it with the files that it was made with");
     advance(hands);
     return true;
@@ -358,7 +399,7 @@ bool Experiment::replay(const Recording& recording) {
 
 bool Experiment::takes(const Hands& hands) const {
     constexpr float most = 1e4f;  // times as strong as usual: a step may be a hundredth then, and no less
-    const auto& models = models_->models;
+    const auto& models = this->models().models;
     float pressure = 0;
     for (const Model& model : models) pressure = std::max(pressure, strength_for(model.body).pressure);
     for (const Press& press : hands.presses)
@@ -376,7 +417,7 @@ bool Experiment::takes(const Hands& hands) const {
 
 std::string Experiment::fingerprint() const {
     std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-    for (const State& state : play_->save())
+    for (const State& state : play().save())
         for (const auto* list : {&state.positions, &state.velocities})
             for (const dvec3& v : *list)
                 for (double number : {v.x, v.y, v.z}) {

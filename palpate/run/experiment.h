@@ -15,7 +15,7 @@ namespace palpate {
 
 /// A scene that was built, and what of: made on any thread, because it may take long.
 struct Prepared {
-    SceneText source;
+    SceneText source;  // without a text where a program made the models
     std::vector<Change> changes;
     Scene scene;
     Models models;
@@ -23,6 +23,11 @@ struct Prepared {
 
 /// Throws Error.
 Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& progress = {});
+
+/// What a program made. Its scene is what goes without saying: colours, tools and paths may be put into it.
+Prepared prepare(Models models);
+/// A body and the surface that is hung on it.
+Prepared prepare(Body body, Mesh surface);
 
 /// How strong a hand is that reaches into a body: as strong as the springs of its heaviest nodes, so that it
 /// moves what it takes hold of, and weaker with light ones, so that the step need not be much shorter.
@@ -35,6 +40,9 @@ Strength strength_for(const Body& body);
 /// A scene that somebody plays with: it goes on frame by frame, whatever is changed meanwhile. Nothing in it
 /// depends on a clock, a window or a thread, so the same inputs at the same frames lead to the same state, to
 /// the bit. A step above the stability bound is accepted here: what it does can be looked at and undone.
+///
+/// What was made without a text can be pinned, undone and restarted as well. But change(), beside(),
+/// recording() and replay() speak of a text, and throw Error where there is none.
 class Experiment {
  public:
     /// On a GPU, in that context. Throws Error.
@@ -81,20 +89,23 @@ class Experiment {
 
     // ---- what there is ----
 
-    const SceneText& source() const { return source_; }
-    const std::vector<Change>& changes() const { return history_[at_]; }
-    const Scene& scene() const { return *scene_; }
-    const Models& models() const { return *models_; }
-    const Play& play() const { return *play_; }
-    const Report& report() const { return *report_; }
+    const SceneText& source() const { return done_.scene; }
+    bool has_text() const { return !source().text.empty(); }
+    void require_text() const;  // throws Error where there is none
+    const std::vector<Change>& changes() const { return history_[at_].changes; }
+    const Scene& scene() const { return *made_.scene; }
+    const Models& models() const { return *made_.models; }
+    const Play& play() const { return *made_.play; }
+    const Report& report() const { return *made_.report; }
     double time() const;    // s
     Energy energy() const;  // of all bodies
 
     /// The longest step that keeps a body's small motions bounded, untouched, s.
     double stable_step(std::size_t body) const;
 
-    /// Goes up whenever a surface, or how it hangs on its nodes, is another.
-    int shapes() const { return shapes_; }
+    /// Another one whenever a surface, or how it hangs on its nodes, is another. Experiments share none.
+    using Shapes = std::shared_ptr<const char>;
+    const Shapes& shapes() const { return shapes_; }
 
     // ---- its inputs ----
 
@@ -110,41 +121,46 @@ class Experiment {
     std::string fingerprint() const;
 
  private:
+    // What was changed: of the text; or without one, the nodes that are pinned, a list a body.
+    struct Setting {
+        std::vector<Change> changes;
+        std::vector<std::vector<int>> pinned;
+        bool operator==(const Setting&) const = default;
+    };
     struct Good {
         long frame;
-        std::vector<Change> changes;
+        Setting setting;
         std::vector<State> states;
     };
-    struct Made;
+    struct Made {
+        std::unique_ptr<Scene> scene;
+        std::unique_ptr<Models> models;
+        std::unique_ptr<Report> report;
+        std::unique_ptr<Play> play;  // goes before what it refers to
+    };
     Experiment(Prepared prepared, const gl::Context* context, const Experiment* other);
-    Made make(const std::vector<Change>& changes) const;
-    Made put_together(const std::vector<Change>& changes, Scene scene, Models models,
-                      const Experiment* other) const;
-    void add_to_history(const std::vector<Change>& changes);
+    Made make(const Setting& setting) const;
+    Made put_together(Scene scene, Models models, const Experiment* other) const;
+    void add_to_history(Setting setting);
     bool fits(const Made& made) const;
     void take(Made made);
     void carry_over(Made& made);
-    void set(std::vector<Change> changes);
+    void set(const Setting& setting);
     void record(Input input);
     void remember();
 
-    SceneText source_;
     const gl::Context* context_;
-    std::vector<std::vector<Change>> history_;  // all changes that hold, after each change
-    std::size_t at_ = 0;                        // in the history
-    std::unique_ptr<Scene> scene_;
-    std::unique_ptr<Models> models_;
-    std::unique_ptr<Report> report_;
-    std::unique_ptr<Play> play_;
+    std::vector<Setting> history_;  // what holds after each change
+    std::size_t at_ = 0;            // in the history
+    Made made_;
+    std::vector<std::vector<float>> free_;  // inverse masses without pins, a list a body, where no text is
     std::string trouble_;
     long frame_ = 0;         // since time 0
     std::deque<Good> good_;  // the latest last
-    int shapes_;
+    Shapes shapes_ = std::make_shared<char>();
 
-    bool records_ = true;
-    std::vector<Change> first_changes_;  // of the recording
-    std::vector<Input> inputs_;
-    long recorded_ = 0;         // frames of the recording so far
+    bool records_;
+    Recording done_;            // to it so far
     std::size_t replayed_ = 0;  // inputs that were done again
 };
 

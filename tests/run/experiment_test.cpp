@@ -3,6 +3,9 @@
 
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
+#include "palpate/body/hull.h"
+#include "palpate/body/lattice.h"
+#include "palpate/body/select.h"
 #include "palpate/run/recording.h"
 #include "palpate/solver/stability.h"
 #include "tests/refusal.h"
@@ -258,14 +261,69 @@ TEST(Experiment, BesideItGoesOnFromTheSameState) {
 
 TEST(Experiment, ShapesAreNewOnlyWhereTheyAre) {
     Experiment experiment = going(1);
-    const int shapes = experiment.shapes();
+    const auto shapes = experiment.shapes();
     experiment.change({"body.1.damping=3", "simulation.integrator=\"rk4\"", "body.1.pin={nodes=[0]}"});
     EXPECT_EQ(experiment.shapes(), shapes);
     experiment.change({"body.1.mapping=\"frames\""});
-    EXPECT_GT(experiment.shapes(), shapes);
-    const int framed = experiment.shapes();
+    EXPECT_NE(experiment.shapes(), shapes);
+    const auto framed = experiment.shapes();
     experiment.undo();
-    EXPECT_GT(experiment.shapes(), framed);
+    EXPECT_NE(experiment.shapes(), framed);
+}
+
+// The same beam as a program makes it: it moves to the bit as the text's.
+TEST(Experiment, OfModelsItDoesWhatNeedsNoText) {
+    Body body = lattice({9, 4, 3}, 0.01f, {.youngs_modulus = 20'000, .density = 1000, .damping = 2});
+    const std::vector<int> end = {0, 9, 18, 27, 36, 45, 54, 63, 72, 81, 90, 99};
+    pin(body, end);
+    Experiment made(prepare(body, hull_mesh(body))), told = going(0);
+    auto both = [&](auto act) {
+        act(made), act(told);
+        EXPECT_EQ(made.fingerprint(), told.fingerprint());
+        EXPECT_EQ(made.can_undo(), told.can_undo());
+    };
+    auto advance = [](Experiment& one) {
+        for (int f = 0; f < 10; ++f) EXPECT_TRUE(one.advance(pulling(8, vec3(0.1f, 0.02f, 0))));
+    };
+    both(advance);
+    both([](Experiment& one) { one.pin(0, {8, 17}, true); });
+    both(advance);
+    both([](Experiment& one) { one.undo(); });
+    both(advance);
+    both([](Experiment& one) { one.redo(); });
+    EXPECT_TRUE(made.is_pinned(0, 8));
+    both([](Experiment& one) { one.pin(0, {8}, false); });
+    EXPECT_FALSE(made.is_pinned(0, 8));
+    both(advance);
+    both([](Experiment& one) { one.return_to_good(); });
+    both(advance);
+    both([](Experiment& one) { one.restart(); });
+    EXPECT_EQ(made.time(), 0);
+    both(advance);
+    EXPECT_GT(made.stable_step(0), 0);
+    expect_refused("made without a mass", [&] { made.pin(0, {0}, false); });
+    expect_refused("no text", [&] { made.change({"body.1.damping=3"}); });
+    expect_refused("no text", [&] { made.beside({}); });
+    expect_refused("no text", [&] { made.recording(); });
+    expect_refused("no text", [&] { made.replay({}); });
+}
+
+TEST(Experiment, OfModelsWithAllThatThereMayBe) {
+    Models models;
+    Body body = lattice({3, 3, 3}, 0.01f, {.youngs_modulus = 20'000, .density = 1000, .damping = 2});
+    Mesh surface = hull_mesh(body);
+    Embedding skin = embed(surface, body);
+    models.models.push_back({body, surface, skin, {}, {}});
+    models.stills.push_back({"table", surface, {}});
+    models.moves.push_back({0, {0, 1, 2}, vec3(0)});
+    pin(models.models[0].body, models.moves[0].nodes);
+    models.simulation.colliders.push_back({Plane{vec3(0, 1, 0), -0.5f}});
+    Prepared prepared = prepare(models);
+    prepared.scene.moves[0].path = {{0, vec3(0), vec3(0)}, {0.1, vec3(0, 0.01f, 0), vec3(0)}};
+    Experiment experiment(std::move(prepared));
+    for (int f = 0; f < 12; ++f) EXPECT_TRUE(experiment.advance());
+    EXPECT_NEAR(place(experiment, 0).y, double(body.positions[0].y) + 0.01, 1e-6);
+    EXPECT_EQ(experiment.play().skins().size(), 2u);
 }
 
 TEST(Experiment, ABodyOfOtherNodesStartsAtRest) {

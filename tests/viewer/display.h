@@ -97,6 +97,8 @@ class Person {
              {long(XInternAtom(display_, "WM_DELETE_WINDOW", False)), CurrentTime, 0, 0, 0});
     }
 
+    bool sees_window() { return window() != 0; }
+
     // What is on the screen, of a window's size.
     std::vector<std::uint8_t> look() {
         XWindowAttributes at;

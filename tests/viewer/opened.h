@@ -1,5 +1,5 @@
 #pragma once
-#include "app/viewer/viewer.h"
+#include "palpate/viewer/viewer.h"
 
 #include <chrono>
 #include <thread>

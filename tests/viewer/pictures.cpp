@@ -1,8 +1,8 @@
 // Draws the viewer's window as docs/viewer.md and the README show it, on a display that nobody sees.
 //   viewer_pictures FOLDER
-#include "app/viewer/window.h"
 #include "palpate/base/files.h"
 #include "palpate/mesh/image.h"
+#include "palpate/viewer/window.h"
 #include "tests/viewer/display.h"
 
 #include <cstdio>

@@ -1,11 +1,11 @@
 // Minutes of random input into the viewer's window on a display that nobody sees; ends with 1 if memory
 // grows.
 //   viewer_soak [MINUTES] [SEED]
-#include "app/viewer/window.h"
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
+#include "palpate/viewer/window.h"
 #include "tests/shapes.h"
 #include "tests/viewer/display.h"
 

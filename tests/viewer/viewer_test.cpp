@@ -1,10 +1,13 @@
 // What the viewer shows, opens and saves, and its controls, without a window and with events that are made
 // up.
-#include "app/viewer/viewer.h"
+#include "palpate/viewer/viewer.h"
 
-#include "app/viewer/gui.h"
 #include "palpate/base/files.h"
+#include "palpate/body/hull.h"
+#include "palpate/body/lattice.h"
+#include "palpate/body/select.h"
 #include "palpate/mesh/write.h"
+#include "palpate/viewer/gui.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 #include "tests/viewer/viewer_test.h"
@@ -170,13 +173,13 @@ TEST_F(ViewerTest, SavesWhatCanBeOpenedAgain) {
     viewer.release(Button::left);
     viewer.change({"simulation.integrator=\"rk4\""});
     viewer.advance(5);
-    viewer.save_picture();
-    viewer.save_surface();
-    viewer.save_recording();
+    viewer.save(Output::picture);
+    viewer.save(Output::surface);
+    viewer.save(Output::recording);
     const std::string print = viewer.experiment()->fingerprint();
     for (const char* file : {"box-1.png", "box-1.ply", "box-1.json"})
         EXPECT_TRUE(std::filesystem::exists(scratch / file)) << file << ": " << viewer.message().text;
-    viewer.save_picture();
+    viewer.save(Output::picture);
     EXPECT_TRUE(std::filesystem::exists(scratch / "box-2.png"));
     viewer.open_file(scratch / "box-1.json");
     const Experiment* open_before = viewer.experiment();
@@ -215,13 +218,41 @@ TEST_F(ViewerTest, NothingIsOpenAndAllIsAsked) {
     viewer.wheel(1);
     viewer.release(Button::left);
     viewer.undo(), viewer.redo(), viewer.restart(), viewer.step_once(), viewer.return_to_good();
-    viewer.save_scene(), viewer.save_picture(), viewer.save_surface(), viewer.save_recording();
-    viewer.start_or_stop_film(), viewer.keep(), viewer.frame_selection();
+    viewer.save(Output::scene), viewer.save(Output::picture), viewer.save(Output::surface),
+        viewer.save(Output::recording);
+    viewer.save(Output::film), viewer.keep(), viewer.frame_selection();
     viewer.change({"simulation.step=1"});
     viewer.resize(ivec2(0, 0));
     EXPECT_EQ(viewer.size(), size);
     viewer.resize(ivec2(7, 5));
     viewer.draw();
+}
+
+// What a program made, without a text of a scene.
+TEST_F(ViewerTest, ShowsWhatAProgramMade) {
+    Body jelly = lattice({9, 4, 4}, 0.02f, {.youngs_modulus = 20'000, .density = 1000, .damping = 2});
+    pin(jelly, nodes_below(jelly, 0.01f, vec3(-1, 0, 0)));
+    viewer.begin(prepare(jelly, hull_mesh(jelly)));
+    ASSERT_TRUE(viewer.experiment()) << viewer.message().text;
+    drag(middle(), middle() + vec2(0, -30), 10);
+    EXPECT_EQ(viewer.holds().size(), 1u) << viewer.message().text;
+    viewer.release(Button::left);
+    viewer.options.mode = Mode::pin;
+    viewer.options.tip = 0.001f;
+    viewer.press(Button::left);
+    EXPECT_TRUE(viewer.can_undo()) << viewer.message().text;
+    viewer.undo();
+    EXPECT_FALSE(viewer.message().bad) << viewer.message().text;
+    for (auto act :
+         {+[](Viewer& one) { one.save(Output::scene); }, +[](Viewer& one) { one.save(Output::recording); },
+          +[](Viewer& one) { one.change({"body.1.damping=3"}); }}) {
+        act(viewer);
+        EXPECT_NE(viewer.message().text.find("no text of a scene"), std::string::npos)
+            << viewer.message().text;
+    }
+    viewer.advance(5);
+    viewer.draw();
+    EXPECT_GT(viewer.image().pixels.size(), 0u);
 }
 
 // ---- the controls ----

@@ -1,8 +1,8 @@
 #pragma once
 // What tests of the viewer share: one without a window, and what a pointer does in it.
-#include "app/viewer/viewer.h"
 #include "palpate/gl/context.h"
 #include "palpate/mesh/image.h"
+#include "palpate/viewer/viewer.h"
 #include "tests/viewer/opened.h"
 
 #include <gtest/gtest.h>

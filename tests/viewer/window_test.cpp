@@ -1,6 +1,6 @@
 // The window on a display of its own (Xvfb), driven by the events of a real mouse and keyboard as the X
 // server makes them.
-#include "app/viewer/window.h"
+#include "palpate/viewer/window.h"
 
 #include "palpate/base/files.h"
 #include "palpate/mesh/write.h"
@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -178,6 +179,31 @@ TEST_F(WindowTest, ClosesWhileItImports) {
     for (int i = 0; i < 20 && open; ++i) open = window->round();
     EXPECT_FALSE(open);
     window.reset();
+}
+
+TEST(ShowTest, AProgramShowsABodyUntilItsWindowIsClosed) {
+    const Xvfb xvfb;
+    if (xvfb.name().empty()) GTEST_SKIP() << "not available: the program Xvfb";
+    const pid_t program = fork();
+    if (program == 0) {
+        setenv("DISPLAY", xvfb.name().c_str(), 1);
+        execl(PALPATE_SHOWS, PALPATE_SHOWS, static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    Person person(xvfb.name());
+    int status = -1;
+    auto goes_on = [&] { return waitpid(program, &status, WNOHANG) == 0; };
+    while (!person.sees_window() && goes_on()) usleep(20'000);
+    auto colours = [&] {
+        std::set<int> all;
+        for (std::uint8_t value : person.look()) all.insert(value);
+        return all.size();
+    };
+    while (colours() < 100 && goes_on()) usleep(20'000);  // a body in the light, and the controls
+    person.close();
+    while (goes_on()) usleep(20'000);
+    EXPECT_TRUE(WIFEXITED(status)) << status;
+    EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(NoWindow, WithoutADisplayItSaysSo) {

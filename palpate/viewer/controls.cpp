@@ -1,7 +1,7 @@
-#include "app/viewer/panel.h"
+#include "palpate/viewer/controls.h"
 
-#include "app/viewer/style.h"
 #include "palpate/run/run.h"
+#include "palpate/viewer/style.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -36,199 +36,9 @@ void choose_device(std::string& name) {
     ImGui::EndCombo();
 }
 
-// Whether a slider has moved, and whether it has been moving before: then both are one change.
-struct Slid {
-    bool moved = false, again = false;
-};
-
-// There is one pointer, and it holds one slider at a time.
-Slid slid(bool moved) {
-    static bool has_moved = false;  // since it was taken hold of
-    if (ImGui::IsItemActivated()) has_moved = false;
-    const Slid result{moved, moved && has_moved};
-    has_moved |= moved;
-    return result;
-}
-
-Slid slide(const char* label, float& value, float low, float high, const char* format,
-           bool logarithmic = false) {
-    return slid(
-        ImGui::SliderFloat(label, &value, low, high, format,
-                           (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp));
-}
-
-// The same for what takes the solver a while: it counts when it is let go of.
-bool slide_and_let_go(const char* label, float& value, float low, float high, const char* format) {
-    static ImGuiID held = 0;
-    static float at = 0;  // where that is
-    const ImGuiID here = ImGui::GetID(label);
-    if (held == here) value = at;
-    ImGui::SliderFloat(label, &value, low, high, format,
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    if (ImGui::IsItemActive()) {
-        held = here;
-        at = value;
-    } else if (held == here) {
-        held = 0;
-        return ImGui::IsItemDeactivatedAfterEdit();
-    }
-    return false;
-}
-
 std::string number(double value) { return fmt::format("{:.6g}", value); }
 
-// ---- the parts ----
-
-void show_hand(Viewer& viewer) {
-    Options& options = viewer.options;
-    for (const auto& mode : names(Mode{})) {
-        if (mode.value != Mode::pull) ImGui::SameLine();
-        if (ImGui::RadioButton(std::string(mode.name).c_str(), options.mode == mode.value))
-            options.mode = mode.value;
-    }
-    const float most = std::max(0.05f, 2 * options.tip);
-    float millimetres = 1000 * options.tip;
-    if (ImGui::SliderFloat("tip", &millimetres, 1, 1000 * most, "%.1f mm",
-                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
-        options.tip = millimetres / 1000;
-    about("the radius of what presses, dents and pins");
-    if (options.mode == Mode::pin) return;
-    choose_device(options.device);
-    about("what moves the hand; a mouse is felt only where it dents");
-    const DeviceNeeds needs = driver(options.device).needs;
-    if (needs == DeviceNeeds::pointer) return;
-    static char file[512] = "";
-    const bool log = needs == DeviceNeeds::log;
-    ImGui::InputTextWithHint(log ? "log" : "path", log ? "felt.csv" : "rows of t, x, y, z", file,
-                             sizeof file);
-    if (ImGui::IsItemDeactivatedAfterEdit()) options.device_file = file;
-}
-
-void show_dent_width(Viewer& viewer) {
-    auto show = [&](const char* kind, std::size_t i, const BodyRecipe recipe) {
-        float width = 1000 * float(recipe.feel.dent_width);
-        if (const Slid s = slide(("dent in " + recipe.name).c_str(), width, 1, 50, "%.1f mm", true); s.moved)
-            viewer.change({fmt::format("{}.{}.touch.width={}", kind, i + 1, number(width / 1000))}, s.again);
-        about("the width of dents in it: their standard deviation");
-    };
-    // Asked for anew each time, since a change makes another scene.
-    auto scene = [&]() -> const Scene& { return viewer.experiment()->scene(); };
-    for (std::size_t i = 0; i < scene().bodies.size(); ++i) show("body", i, scene().bodies[i]);
-    for (std::size_t i = 0; i < scene().surfaces.size(); ++i) show("surface", i, scene().surfaces[i]);
-}
-
-void show_motion(Viewer& viewer) {
-    const Simulation simulation = viewer.experiment()->models().simulation;  // a change makes another
-    Integrator integrator = simulation.integrator;
-    if (choose("integrator", integrator))
-        viewer.change({fmt::format("simulation.integrator=\"{}\"", name_of(integrator))});
-    Backend backend = simulation.backend;
-    if (choose("backend", backend))
-        viewer.change({fmt::format("simulation.backend=\"{}\"", name_of(backend))});
-    about("where it is computed; the motion goes on from where it is");
-    if (backend == Backend::cpu) {
-        int threads = simulation.threads;
-        if (const Slid s =
-                slid(ImGui::SliderInt("threads", &threads, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp));
-            s.moved)
-            viewer.change({fmt::format("simulation.threads={}", threads)}, s.again);
-    }
-}
-
-// The step beside the longest that is stable.
-void show_step(Viewer& viewer) {
-    const Experiment& experiment = *viewer.experiment();
-    const double step = experiment.models().simulation.step;  // a change makes other models
-    double bound = 1;
-    for (std::size_t m = 0; m < experiment.models().models.size(); ++m)
-        bound = std::min(bound, experiment.stable_step(m));
-    bool automatic = step == 0;
-    double taken = automatic ? frame_seconds / experiment.play().steps_per_frame() : step;
-    for (const Stats& stats : experiment.play().stats())
-        if (automatic) taken = std::max(taken, stats.step);
-    if (ImGui::Checkbox("automatic step", &automatic))
-        viewer.change({automatic ? std::string("simulation.step=\"auto\"")
-                                 : "simulation.step=" + number(std::clamp(taken, 1e-5, 0.0166))});
-    if (!automatic) {
-        float milliseconds = float(1000 * step);
-        const float high = float(std::min(1.5 * 1000 * bound, 16.6));
-        if (slide_and_let_go("step", milliseconds, 0.02f, std::max(high, 0.05f), "%.3f ms"))
-            viewer.change({"simulation.step=" + number(milliseconds / 1000.0)});
-    } else {
-        ImGui::Text("step %.3f ms", 1000 * taken);
-    }
-    const bool unstable = step > bound;
-    if (unstable)
-        ImGui::TextColored(warning, "unstable above %.3f ms", 1000 * bound);
-    else
-        ImGui::TextColored(quiet, "stable up to %.3f ms, untouched", 1000 * bound);
-}
-
-void show_body(Viewer& viewer, std::size_t b) {
-    const BodyRecipe recipe = viewer.experiment()->scene().bodies[b];  // a change makes another scene
-    auto change = [&](const std::string& key, const std::string& value) {
-        viewer.change({fmt::format("body.{}.{}={}", b + 1, key, value)});
-    };
-    Mapping mapping = recipe.mapping;
-    if (choose("mapping", mapping)) change("mapping", fmt::format("\"{}\"", name_of(mapping)));
-    about("how the surface follows the nodes");
-    const Material& material = recipe.material;
-    auto amount = [&](const char* label, const char* key, float value, const char* format) {
-        if (!(value > 0)) return;
-        const float middle = std::pow(10.0f, std::round(std::log10(value)));
-        if (slide_and_let_go(label, value, middle / 100, middle * 100, format)) change(key, number(value));
-    };
-    amount("Young's mod.", "youngs_modulus", material.youngs_modulus, "%.3g Pa");
-    amount("stiffness", "stiffness", material.stiffness, "%.3g N/m");
-    if (recipe.springs) {
-        amount("structural", "springs.structural", recipe.springs->structural, "%.3g N/m");
-        amount("shear", "springs.shear", recipe.springs->shear, "%.3g N/m");
-        amount("flexion", "springs.flexion", recipe.springs->flexion, "%.3g N/m");
-    }
-    amount("density", "density", material.density, recipe.is_cloth() ? "%.3g kg/m²" : "%.4g kg/m³");
-    amount("mass", "mass", material.mass, "%.3g kg");
-    float damping = material.damping;
-    if (slide_and_let_go("damping", damping, 0, 50, "%.2f 1/s")) change("damping", number(damping));
-}
-
-void show_surroundings(Viewer& viewer) {
-    const Experiment& experiment = *viewer.experiment();
-    vec3 gravity = experiment.scene().simulation.gravity;
-    if (const Slid s = slid(ImGui::SliderFloat3("gravity", &gravity.x, -20, 20, "%.1f")); s.moved)
-        viewer.change({fmt::format("simulation.gravity=[{},{},{}]", gravity.x, gravity.y, gravity.z)},
-                      s.again);
-    about("m/s²");
-    constexpr float usual_air = 1.2f;  // kg/m³
-    const float air = experiment.scene().simulation.air;
-    vec3 wind =
-        experiment.scene().wind.empty() ? vec3(0) : position(experiment.scene().wind, experiment.time());
-    if (const Slid s = slid(ImGui::SliderFloat3("wind", &wind.x, -15, 15, "%.1f")); s.moved)
-        viewer.change({fmt::format("wind={{velocity=[{},{},{}]}}", wind.x, wind.y, wind.z),
-                       "simulation.air=" + number(air > 0 ? air : usual_air)},
-                      s.again);
-    about("m/s; moves sheets and surfaces");
-    for (std::size_t c = 0; c < experiment.scene().colliders.size(); ++c) {
-        const Collider collider = experiment.scene().colliders[c].collider;  // a change makes another scene
-        ImGui::PushID(int(c));
-        auto change = [&](const std::string& key, const std::string& value, bool again) {
-            viewer.change({fmt::format("collider.{}.{}={}", c + 1, key, value)}, again);
-        };
-        ImGui::TextColored(quiet, "collider %d", int(c) + 1);
-        float friction = collider.friction;
-        if (const Slid s = slide("friction", friction, 0, 2, "%.2f"); s.moved)
-            change("friction", number(friction), s.again);
-        if (const auto* plane = std::get_if<Plane>(&collider.shape)) {
-            float offset = plane->offset;
-            if (const Slid s = slide("height", offset, -1, 1, "%.3f m"); s.moved)
-                change("plane.offset", number(offset), s.again);
-        } else if (const auto* sphere = std::get_if<Sphere>(&collider.shape)) {
-            vec3 centre = sphere->centre;
-            if (const Slid s = slid(ImGui::SliderFloat3("centre", &centre.x, -1, 1, "%.3f")); s.moved)
-                change("sphere.centre", fmt::format("[{},{},{}]", centre.x, centre.y, centre.z), s.again);
-        }
-        ImGui::PopID();
-    }
-}
+// ---- parts that keep nothing ----
 
 // A plane under everything, for what is let go of.
 void show_ground(Viewer& viewer) {
@@ -277,7 +87,7 @@ void plot(const char* name, const Recent& curve) {
 }
 
 void show_readings(const Viewer& viewer) {
-    const Viewer::Readings& readings = viewer.readings();
+    const Readings& readings = viewer.readings();
     for (auto [name, curve] :
          {std::pair("simulate", &readings.simulate), {"map", &readings.map}, {"draw", &readings.draw}}) {
         ImGui::PushID(name);
@@ -308,14 +118,14 @@ void show_readings(const Viewer& viewer) {
 }
 
 void show_files(Viewer& viewer) {
-    if (ImGui::Button("scene")) viewer.save_scene();
+    if (ImGui::Button("scene")) viewer.save(Output::scene);
     ImGui::SameLine();
-    if (ImGui::Button("picture")) viewer.save_picture();
+    if (ImGui::Button("picture")) viewer.save(Output::picture);
     ImGui::SameLine();
-    if (ImGui::Button("surface")) viewer.save_surface();
-    if (ImGui::Button(viewer.filming() ? "end film" : "film")) viewer.start_or_stop_film();
+    if (ImGui::Button("surface")) viewer.save(Output::surface);
+    if (ImGui::Button(viewer.filming() ? "end film" : "film")) viewer.save(Output::film);
     ImGui::SameLine();
-    if (ImGui::Button("recording")) viewer.save_recording();
+    if (ImGui::Button("recording")) viewer.save(Output::recording);
     about("all inputs with their times, to replay to the bit");
 }
 
@@ -344,7 +154,193 @@ void show_steering(Viewer& viewer) {
 
 }  // namespace
 
-void show_panel(Viewer& viewer, float scale) {
+// ---- sliders ----
+
+Sliders::Slid Sliders::slid(bool moved) {
+    if (ImGui::IsItemActivated()) has_moved_ = false;
+    const Slid result{moved, moved && has_moved_};
+    has_moved_ |= moved;
+    return result;
+}
+
+Sliders::Slid Sliders::slide(const char* label, float& value, float low, float high, const char* format,
+                             bool logarithmic) {
+    return slid(
+        ImGui::SliderFloat(label, &value, low, high, format,
+                           (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp));
+}
+
+bool Sliders::slide_and_let_go(const char* label, float& value, float low, float high, const char* format) {
+    const ImGuiID here = ImGui::GetID(label);
+    if (held_ == here) value = at_;
+    ImGui::SliderFloat(label, &value, low, high, format,
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemActive()) {
+        held_ = here;
+        at_ = value;
+    } else if (held_ == here) {
+        held_ = 0;
+        return ImGui::IsItemDeactivatedAfterEdit();
+    }
+    return false;
+}
+
+// ---- parts with sliders ----
+
+void Controls::show_hand(Viewer& viewer) {
+    Options& options = viewer.options;
+    for (const auto& mode : names(Mode{})) {
+        if (mode.value != Mode::pull) ImGui::SameLine();
+        if (ImGui::RadioButton(std::string(mode.name).c_str(), options.mode == mode.value))
+            options.mode = mode.value;
+    }
+    const float most = std::max(0.05f, 2 * options.tip);
+    float millimetres = 1000 * options.tip;
+    if (ImGui::SliderFloat("tip", &millimetres, 1, 1000 * most, "%.1f mm",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+        options.tip = millimetres / 1000;
+    about("the radius of what presses, dents and pins");
+    if (options.mode == Mode::pin) return;
+    choose_device(options.device);
+    about("what moves the hand; a mouse is felt only where it dents");
+    const DeviceNeeds needs = driver(options.device).needs;
+    if (needs == DeviceNeeds::pointer) return;
+    const bool log = needs == DeviceNeeds::log;
+    ImGui::InputTextWithHint(log ? "log" : "path", log ? "felt.csv" : "rows of t, x, y, z", file_,
+                             sizeof file_);
+    if (ImGui::IsItemDeactivatedAfterEdit()) options.device_file = file_;
+}
+
+void Controls::show_dent_width(Viewer& viewer) {
+    auto show = [&](const char* kind, std::size_t i, const BodyRecipe recipe) {
+        float width = 1000 * float(recipe.feel.dent_width);
+        if (const auto s = sliders_.slide(("dent in " + recipe.name).c_str(), width, 1, 50, "%.1f mm", true);
+            s.moved)
+            viewer.change({fmt::format("{}.{}.touch.width={}", kind, i + 1, number(width / 1000))}, s.again);
+        about("the width of dents in it: their standard deviation");
+    };
+    // Asked for anew each time, since a change makes another scene.
+    auto scene = [&]() -> const Scene& { return viewer.experiment()->scene(); };
+    for (std::size_t i = 0; i < scene().bodies.size(); ++i) show("body", i, scene().bodies[i]);
+    for (std::size_t i = 0; i < scene().surfaces.size(); ++i) show("surface", i, scene().surfaces[i]);
+}
+
+void Controls::show_motion(Viewer& viewer) {
+    const Simulation simulation = viewer.experiment()->models().simulation;  // a change makes another
+    Integrator integrator = simulation.integrator;
+    if (choose("integrator", integrator))
+        viewer.change({fmt::format("simulation.integrator=\"{}\"", name_of(integrator))});
+    Backend backend = simulation.backend;
+    if (choose("backend", backend))
+        viewer.change({fmt::format("simulation.backend=\"{}\"", name_of(backend))});
+    about("where it is computed; the motion goes on from where it is");
+    if (backend == Backend::cpu) {
+        int threads = simulation.threads;
+        if (const auto s = sliders_.slid(
+                ImGui::SliderInt("threads", &threads, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp));
+            s.moved)
+            viewer.change({fmt::format("simulation.threads={}", threads)}, s.again);
+    }
+}
+
+// The step beside the longest that is stable.
+void Controls::show_step(Viewer& viewer) {
+    const Experiment& experiment = *viewer.experiment();
+    const double step = experiment.models().simulation.step;  // a change makes other models
+    double bound = 1;
+    for (std::size_t m = 0; m < experiment.models().models.size(); ++m)
+        bound = std::min(bound, experiment.stable_step(m));
+    bool automatic = step == 0;
+    double taken = automatic ? frame_seconds / experiment.play().steps_per_frame() : step;
+    for (const Stats& stats : experiment.play().stats())
+        if (automatic) taken = std::max(taken, stats.step);
+    if (ImGui::Checkbox("automatic step", &automatic))
+        viewer.change({automatic ? std::string("simulation.step=\"auto\"")
+                                 : "simulation.step=" + number(std::clamp(taken, 1e-5, 0.0166))});
+    if (!automatic) {
+        float milliseconds = float(1000 * step);
+        const float high = float(std::min(1.5 * 1000 * bound, 16.6));
+        if (sliders_.slide_and_let_go("step", milliseconds, 0.02f, std::max(high, 0.05f), "%.3f ms"))
+            viewer.change({"simulation.step=" + number(milliseconds / 1000.0)});
+    } else {
+        ImGui::Text("step %.3f ms", 1000 * taken);
+    }
+    const bool unstable = step > bound;
+    if (unstable)
+        ImGui::TextColored(warning, "unstable above %.3f ms", 1000 * bound);
+    else
+        ImGui::TextColored(quiet, "stable up to %.3f ms, untouched", 1000 * bound);
+}
+
+void Controls::show_body(Viewer& viewer, std::size_t b) {
+    const BodyRecipe recipe = viewer.experiment()->scene().bodies[b];  // a change makes another scene
+    auto change = [&](const std::string& key, const std::string& value) {
+        viewer.change({fmt::format("body.{}.{}={}", b + 1, key, value)});
+    };
+    Mapping mapping = recipe.mapping;
+    if (choose("mapping", mapping)) change("mapping", fmt::format("\"{}\"", name_of(mapping)));
+    about("how the surface follows the nodes");
+    const Material& material = recipe.material;
+    auto amount = [&](const char* label, const char* key, float value, const char* format) {
+        if (!(value > 0)) return;
+        const float middle = std::pow(10.0f, std::round(std::log10(value)));
+        if (sliders_.slide_and_let_go(label, value, middle / 100, middle * 100, format))
+            change(key, number(value));
+    };
+    amount("Young's mod.", "youngs_modulus", material.youngs_modulus, "%.3g Pa");
+    amount("stiffness", "stiffness", material.stiffness, "%.3g N/m");
+    if (recipe.springs) {
+        amount("structural", "springs.structural", recipe.springs->structural, "%.3g N/m");
+        amount("shear", "springs.shear", recipe.springs->shear, "%.3g N/m");
+        amount("flexion", "springs.flexion", recipe.springs->flexion, "%.3g N/m");
+    }
+    amount("density", "density", material.density, recipe.is_cloth() ? "%.3g kg/m²" : "%.4g kg/m³");
+    amount("mass", "mass", material.mass, "%.3g kg");
+    float damping = material.damping;
+    if (sliders_.slide_and_let_go("damping", damping, 0, 50, "%.2f 1/s")) change("damping", number(damping));
+}
+
+void Controls::show_surroundings(Viewer& viewer) {
+    const Experiment& experiment = *viewer.experiment();
+    vec3 gravity = experiment.scene().simulation.gravity;
+    if (const auto s = sliders_.slid(ImGui::SliderFloat3("gravity", &gravity.x, -20, 20, "%.1f")); s.moved)
+        viewer.change({fmt::format("simulation.gravity=[{},{},{}]", gravity.x, gravity.y, gravity.z)},
+                      s.again);
+    about("m/s²");
+    constexpr float usual_air = 1.2f;  // kg/m³
+    const float air = experiment.scene().simulation.air;
+    vec3 wind =
+        experiment.scene().wind.empty() ? vec3(0) : position(experiment.scene().wind, experiment.time());
+    if (const auto s = sliders_.slid(ImGui::SliderFloat3("wind", &wind.x, -15, 15, "%.1f")); s.moved)
+        viewer.change({fmt::format("wind={{velocity=[{},{},{}]}}", wind.x, wind.y, wind.z),
+                       "simulation.air=" + number(air > 0 ? air : usual_air)},
+                      s.again);
+    about("m/s; moves sheets and surfaces");
+    for (std::size_t c = 0; c < experiment.scene().colliders.size(); ++c) {
+        const Collider collider = experiment.scene().colliders[c].collider;  // a change makes another scene
+        ImGui::PushID(int(c));
+        auto change = [&](const std::string& key, const std::string& value, bool again) {
+            viewer.change({fmt::format("collider.{}.{}={}", c + 1, key, value)}, again);
+        };
+        ImGui::TextColored(quiet, "collider %d", int(c) + 1);
+        float friction = collider.friction;
+        if (const auto s = sliders_.slide("friction", friction, 0, 2, "%.2f"); s.moved)
+            change("friction", number(friction), s.again);
+        if (const auto* plane = std::get_if<Plane>(&collider.shape)) {
+            float offset = plane->offset;
+            if (const auto s = sliders_.slide("height", offset, -1, 1, "%.3f m"); s.moved)
+                change("plane.offset", number(offset), s.again);
+        } else if (const auto* sphere = std::get_if<Sphere>(&collider.shape)) {
+            vec3 centre = sphere->centre;
+            if (const auto s = sliders_.slid(ImGui::SliderFloat3("centre", &centre.x, -1, 1, "%.3f"));
+                s.moved)
+                change("sphere.centre", fmt::format("[{},{},{}]", centre.x, centre.y, centre.z), s.again);
+        }
+        ImGui::PopID();
+    }
+}
+
+void Controls::show(Viewer& viewer, float scale) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({panel_width * scale, ImGui::GetIO().DisplaySize.y});
     const Experiment& experiment = *viewer.experiment();
@@ -358,28 +354,30 @@ void show_panel(Viewer& viewer, float scale) {
             if (ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) show();
         };
         show_steering(viewer);
+        const bool has_text = experiment.has_text();  // all that is changed below is changed in it
         part("hand", true, [&] {
             show_hand(viewer);
-            if (viewer.options.mode == Mode::dent) show_dent_width(viewer);
+            if (has_text && viewer.options.mode == Mode::dent) show_dent_width(viewer);
         });
-        if (!experiment.scene().bodies.empty())
+        if (has_text && !experiment.scene().bodies.empty())
             part("motion", true, [&] {
                 show_motion(viewer);
                 show_step(viewer);
             });
-        for (std::size_t b = 0; b < viewer.experiment()->scene().bodies.size(); ++b) {
+        for (std::size_t b = 0; has_text && b < viewer.experiment()->scene().bodies.size(); ++b) {
             ImGui::PushID(int(b));
             const std::string name = "body " + viewer.experiment()->scene().bodies[b].name;
             part(name.c_str(), b == 0, [&] { show_body(viewer, b); });
             ImGui::PopID();
         }
-        part("surroundings", false, [&] {
-            show_surroundings(viewer);
-            show_ground(viewer);
-        });
+        if (has_text)
+            part("surroundings", false, [&] {
+                show_surroundings(viewer);
+                show_ground(viewer);
+            });
         part("look", false, [&] {
             show_look(viewer);
-            show_comparison(viewer);
+            if (has_text) show_comparison(viewer);
         });
         part("readings", true, [&] { show_readings(viewer); });
         part("save", false, [&] { show_files(viewer); });

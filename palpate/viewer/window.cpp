@@ -1,7 +1,8 @@
-#include "app/viewer/window.h"
+#include "palpate/viewer/window.h"
 
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
+#include "palpate/viewer/show.h"
 
 #define GLFW_INCLUDE_NONE  // epoxy has OpenGL's names
 #include <GLFW/glfw3.h>
@@ -22,15 +23,19 @@ namespace {
 constexpr double round_seconds = 1.0 / 60;  // no faster than that
 constexpr int most_frames = 2;              // of the scene a round: behind real time rather than stuck
 
-std::string complaint;  // GLFW's last
+// What GLFW says of its last failure.
+std::string complaint() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text ? text : "no reason given";
+}
 
 // GLFW itself, as long as there is a window.
 struct Glfw {
     Glfw() {
-        glfwSetErrorCallback([](int, const char* text) { complaint = text; });
         if (!glfwInit())
-            throw Error("no display to open a window on (" + complaint + ")", "the viewer",
-                        "run it on a desktop; or run a scene off screen, with --headless");
+            throw Error("no display to open a window on (" + complaint() + ")", "the viewer",
+                        "run it on a desktop; or run a scene off screen, by palpate run SCENE --headless");
     }
     ~Glfw() { glfwTerminate(); }
 };
@@ -44,8 +49,8 @@ GLFWwindow* make_window(ivec2 size, bool visible = true) {
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     GLFWwindow* window = glfwCreateWindow(size.x, size.y, "Palpate", nullptr, nullptr);
     if (!window)
-        throw Error("no window with OpenGL 4.5 (" + complaint + ")", "the viewer",
-                    "update the graphics driver; or run a scene off screen, with --headless");
+        throw Error("no window with OpenGL 4.5 (" + complaint() + ")", "the viewer",
+                    "update the graphics driver; or run a scene off screen, by palpate run SCENE --headless");
     glfwMakeContextCurrent(window);
     glfwSwapInterval(1);
     return window;

@@ -1,13 +1,10 @@
 #pragma once
-#include "app/viewer/gui.h"
-#include "app/viewer/viewer.h"
+#include "palpate/viewer/gui.h"
+#include "palpate/viewer/viewer.h"
 
 #include <memory>
 
 namespace palpate {
-
-/// Throws Error where no window could be opened.
-void check_window();
 
 /// The viewer in a window of the desktop.
 class Window {

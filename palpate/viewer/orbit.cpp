@@ -1,4 +1,4 @@
-#include "app/viewer/orbit.h"
+#include "palpate/viewer/orbit.h"
 
 #include <algorithm>
 #include <cmath>

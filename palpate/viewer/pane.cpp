@@ -1,4 +1,4 @@
-#include "app/viewer/pane.h"
+#include "palpate/viewer/pane.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "app/viewer/hand.h"
+#include "palpate/viewer/hand.h"
 
 #include "palpate/base/error.h"
 #include "palpate/run/run.h"
@@ -11,11 +11,7 @@ namespace {
 
 constexpr std::size_t most_threads_of_a_hold = 4;  // of the 8 drags that a body takes
 
-float width_of(const Body& body) {
-    Bounds box;
-    for (vec3 p : body.positions) box.include(p);
-    return glm::length(box.size());
-}
+float width_of(const Body& body) { return glm::length(bounds(body.positions).size()); }
 
 }  // namespace
 

@@ -24,6 +24,18 @@ Ray ray_through(const Camera& camera, vec2 pixel, ivec2 size);
 /// Where a point of the scene is in the picture, in pixels; nothing if it is behind the eye.
 std::optional<vec2> pixel_of(const Camera& camera, vec3 point, ivec2 size);
 
+/// What somebody looks at who points into a picture.
+struct Sight {
+    Camera camera;
+    ivec2 size = ivec2(1);  // of the picture, pixels
+    vec2 pixel = vec2(0);   // that is pointed at
+
+    Ray ray() const { return ray_through(camera, pixel, size); }
+    /// How far something lies before the eye, along the view, m; and what lies so far under the pointer.
+    float depth_of(vec3 place) const { return glm::dot(place - camera.eye, forward_of(camera)); }
+    vec3 at_depth(float depth) const { return ray().at(depth / glm::dot(ray().along, forward_of(camera))); }
+};
+
 /// What a ray meets first of some surfaces.
 struct Hit {
     float way = 0;            // m, along the ray

@@ -3,22 +3,12 @@
 #include "palpate/render/renderer.h"
 #include "palpate/run/experiment.h"
 #include "palpate/run/scenery.h"
+#include "palpate/viewer/options.h"
 
 #include <optional>
 #include <vector>
 
 namespace palpate {
-
-/// How an experiment is shown. Nothing of it changes what moves.
-struct Look3d {
-    bool wireframe = false;  // the triangles' edges over the surfaces
-    bool springs = false;    // the lattice's
-    bool normals = false;    // as colours (2005, figure 6)
-    bool normal_maps = true;
-    bool culling = true;
-
-    bool operator==(const Look3d&) const = default;
-};
 
 /// What hands add to a picture: their tips, lines from what they hold, and dents.
 struct Traces {
@@ -26,7 +16,13 @@ struct Traces {
     std::vector<vec3> points;
     std::vector<uvec2> lines;
     std::vector<std::vector<Dent>> dents;  // one list a surface, or none at all
+
+    void add_line(vec3 from, vec3 to) {
+        lines.push_back(uvec2(points.size(), points.size() + 1));
+        points.insert(points.end(), {from, to});
+    }
 };
+inline const vec3 hand_colour(0.95f, 0.6f, 0.1f), proxy_colour(0.1f, 0.45f, 0.85f);
 
 /// One picture in the window: an experiment as a renderer draws it.
 class Pane {
@@ -50,7 +46,7 @@ class Pane {
     ivec2 size_;
     std::optional<Scenery> scenery_;
     Quality quality_;
-    int shapes_ = -1;                        // what is shown: see Experiment::shapes
+    Experiment::Shapes shapes_;              // that are shown
     std::vector<std::vector<uvec2>> edges_;  // of the surfaces, once somebody wants to see them
     std::vector<std::vector<Dent>> dents_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-#include "app/viewer/viewer.h"
+#include "palpate/viewer/controls.h"
 
 struct ImGuiContext;
 
@@ -35,6 +35,7 @@ class Gui {
  private:
     ImGuiContext* context_;
     float scale_;
+    Controls controls_;
 };
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "app/viewer/import.h"
+#include "palpate/viewer/import.h"
 
 #include "palpate/base/error.h"
 

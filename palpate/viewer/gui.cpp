@@ -1,8 +1,7 @@
-#include "app/viewer/gui.h"
+#include "palpate/viewer/gui.h"
 
-#include "app/viewer/panel.h"
-#include "app/viewer/style.h"
 #include "palpate/base/clock.h"
+#include "palpate/viewer/style.h"
 
 #include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
@@ -42,6 +41,31 @@ constexpr KeyHelp keys[] = {
     {"Tab", "hide or show the controls"},
     {"?", "this list"},
     {"Esc", "close it; stop opening a file"},
+};
+
+struct KeyAction {
+    char key;
+    void (*act)(Viewer&);
+};
+constexpr KeyAction actions[] = {
+    {'1', [](Viewer& viewer) { viewer.options.mode = Mode::pull; }},
+    {'2', [](Viewer& viewer) { viewer.options.mode = Mode::press; }},
+    {'3', [](Viewer& viewer) { viewer.options.mode = Mode::dent; }},
+    {'4', [](Viewer& viewer) { viewer.options.mode = Mode::pin; }},
+    {'K', [](Viewer& viewer) { viewer.keep(); }},
+    {' ', [](Viewer& viewer) { viewer.pause(); }},
+    {'.', [](Viewer& viewer) { viewer.step_once(); }},
+    {'R', [](Viewer& viewer) { viewer.restart(); }},
+    {'F', [](Viewer& viewer) { viewer.frame_selection(); }},
+    {Gui::home_key, [](Viewer& viewer) { viewer.reset_camera(); }},
+    {'B', [](Viewer& viewer) { viewer.return_to_good(); }},
+    {'W', [](Viewer& viewer) { viewer.options.look.wireframe ^= true; }},
+    {'L', [](Viewer& viewer) { viewer.options.look.springs ^= true; }},
+    {'N', [](Viewer& viewer) { viewer.options.look.normals ^= true; }},
+    {'P', [](Viewer& viewer) { viewer.save(Output::picture); }},
+    {'V', [](Viewer& viewer) { viewer.save(Output::film); }},
+    {'E', [](Viewer& viewer) { viewer.save(Output::surface); }},
+    {'J', [](Viewer& viewer) { viewer.save(Output::recording); }},
 };
 
 void colours(float scale) {
@@ -105,7 +129,7 @@ void show_import(Viewer& viewer) {
 }
 
 void show_message(const Viewer& viewer, float scale) {
-    const Viewer::Message& message = viewer.message();
+    const Message& message = viewer.message();
     const double age = now() - message.since;
     const bool is_long = message.bad || message.text.find('\n') != std::string::npos;
     if (message.text.empty() || age > (is_long ? 20 : 6)) return;
@@ -150,7 +174,7 @@ void show_help_window(bool& open) {
 }
 
 // A force's arrow from a hand's place, by the root of its size, and that in words.
-void draw_arrow(const Viewer& viewer, const Viewer::Arrow& arrow, float scale) {
+void draw_arrow(const Viewer& viewer, const Arrow& arrow, float scale) {
     const float newtons = glm::length(arrow.force);
     if (!(newtons > 0)) return;
     const ivec2 size = viewer.view_size();
@@ -239,10 +263,10 @@ bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
 void Gui::draw(Viewer& viewer) {
     if (!viewer.experiment() && !viewer.importing()) show_start(viewer);
     if (viewer.experiment()) {
-        for (const Viewer::Arrow& arrow : viewer.arrows()) draw_arrow(viewer, arrow, scale_);
+        for (const Arrow& arrow : viewer.arrows()) draw_arrow(viewer, arrow, scale_);
         draw_tip(viewer, scale_);
         label_views(viewer, scale_);
-        if (shows_panel) show_panel(viewer, scale_);
+        if (shows_panel) controls_.show(viewer, scale_);
         show_hint(viewer, scale_);
     }
     if (viewer.importing()) show_import(viewer);
@@ -253,83 +277,19 @@ void Gui::draw(Viewer& viewer) {
 }
 
 void Gui::key(Viewer& viewer, char key, bool control, bool shift) {
-    Options& options = viewer.options;
     if (control) {
         if (key == 'Z') shift ? viewer.redo() : viewer.undo();
         if (key == 'Y') viewer.redo();
-        if (key == 'S') viewer.save_scene();
+        if (key == 'S') viewer.save(Output::scene);
         return;
     }
-    switch (key) {
-        case '1':
-            options.mode = Mode::pull;
-            break;
-        case '2':
-            options.mode = Mode::press;
-            break;
-        case '3':
-            options.mode = Mode::dent;
-            break;
-        case '4':
-            options.mode = Mode::pin;
-            break;
-        case 'K':
-            viewer.keep();
-            break;
-        case ' ':
-            viewer.pause();
-            break;
-        case '.':
-            viewer.step_once();
-            break;
-        case 'R':
-            viewer.restart();
-            break;
-        case 'F':
-            viewer.frame_selection();
-            break;
-        case home_key:
-            viewer.reset_camera();
-            break;
-        case 'B':
-            viewer.return_to_good();
-            break;
-        case 'W':
-            options.look.wireframe = !options.look.wireframe;
-            break;
-        case 'L':
-            options.look.springs = !options.look.springs;
-            break;
-        case 'N':
-            options.look.normals = !options.look.normals;
-            break;
-        case 'P':
-            viewer.save_picture();
-            break;
-        case 'V':
-            viewer.start_or_stop_film();
-            break;
-        case 'E':
-            viewer.save_surface();
-            break;
-        case 'J':
-            viewer.save_recording();
-            break;
-        case '\t':
-            shows_panel = !shows_panel;
-            break;
-        case '?':
-            shows_help = !shows_help;
-            break;
-        case escape_key:
-            if (shows_help)
-                shows_help = false;
-            else if (viewer.importing())
-                viewer.cancel_import();
-            break;
-        default:
-            break;
-    }
+    for (const KeyAction& one : actions)
+        if (one.key == key) one.act(viewer);
+    if (key == '\t') shows_panel = !shows_panel;
+    if (key == '?') shows_help = !shows_help;
+    if (key != escape_key) return;
+    if (!shows_help) viewer.cancel_import();
+    shows_help = false;
 }
 
 }  // namespace palpate

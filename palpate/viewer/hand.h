@@ -1,28 +1,10 @@
 #pragma once
-#include "app/viewer/orbit.h"
-#include "palpate/base/names.h"
 #include "palpate/run/experiment.h"
+#include "palpate/viewer/orbit.h"
 
-#include <filesystem>
-#include <memory>
-#include <optional>
 #include <vector>
 
 namespace palpate {
-
-/// What a hand does to what it meets.
-enum class Mode {
-    pull,   // takes hold of a surface and pulls it along
-    press,  // pushes a round tip into it, along the view
-    dent,   // dents its picture and feels it, a thousand times a second; bodies do not feel it (2007)
-    pin,    // holds nodes fast, or lets go of them
-};
-
-inline std::span<const Named<Mode>> names(Mode) {
-    static constexpr Named<Mode> all[] = {
-        {Mode::pull, "pull"}, {Mode::press, "press"}, {Mode::dent, "dent"}, {Mode::pin, "pin"}};
-    return all;
-}
 
 /// A hand that has hold of a body, or a tip of it that presses.
 class Hold {

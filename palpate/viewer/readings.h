@@ -1,0 +1,49 @@
+#pragma once
+#include "palpate/run/experiment.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace palpate {
+
+/// The last few seconds of something that is measured once a picture.
+class Recent {
+ public:
+    static constexpr std::size_t length = 180;
+    void add(float value) {
+        values_[next_] = value;
+        next_ = (next_ + 1) % length;
+        count_ = std::min(count_ + 1, length);
+    }
+    std::size_t count() const { return count_; }
+    float at(std::size_t i) const {
+        return values_[(next_ + length - count_ + i) % length];
+    }  // the oldest: 0
+    float mean() const;
+    float most() const;
+
+ private:
+    std::array<float, length> values_ = {};
+    std::size_t next_ = 0, count_ = 0;
+};
+
+/// What an experiment takes and does, from picture to picture.
+class Readings {
+ public:
+    Recent simulate, map, draw;    // ms a picture
+    Recent pace;                   // s of the scene a second
+    std::optional<Energy> energy;  // none where that would have to be read from a GPU
+    double largest_speed = 0;      // m/s
+    std::size_t memory = 0;        // bytes, of all moving states
+
+    /// Once a picture. `moves`: it is not paused.
+    void measure(const Experiment& experiment, bool moves);
+
+ private:
+    double simulated_ = 0, mapped_ = 0, measured_ = 0, paced_ = 0;  // s, until the picture before
+    long pictures_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,130 @@
+#include "palpate/viewer/views.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/run/framing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr float usual = 1.3f;  // times as wide as high, for which scenes choose their angles
+constexpr double calm = 0.4;   // s without motion, after which a picture is drawn in full
+
+// Two pictures side by side.
+Image beside_each_other(const Image& left, const Image& right) {
+    Image both{left.width + right.width, left.height, {}};
+    for (int row = 0; row < left.height; ++row)
+        for (const Image* one : {&left, &right}) {
+            const auto from = one->pixels.begin() + 4 * std::ptrdiff_t(row) * one->width;
+            both.pixels.insert(both.pixels.end(), from, from + 4 * one->width);
+        }
+    return both;
+}
+
+// The camera of one eye; both look at the same point, a thirtieth of its distance apart.
+Camera eye_of(Camera camera, float side) {
+    const vec3 to = camera.look_at - camera.eye;
+    const vec3 right = glm::cross(to, camera.up);
+    if (glm::length(right) > 0) camera.eye += side * glm::length(to) / 60 * glm::normalize(right);
+    return camera;
+}
+
+}  // namespace
+
+Views::Views(const gl::Context& context, ivec2 size, const Session& session, const Options& options)
+    : context_(context),
+      session_(session),
+      options_(options),
+      size_(glm::max(size, ivec2(1))),
+      pane_(context, size_),
+      other_pane_(context, ivec2(16)) {}
+
+void Views::resize(ivec2 size, int left) {
+    if (size.x < 1 || size.y < 1) return;  // minimised: nothing is drawn until it has a size again
+    size_ = size;
+    left_ = left;
+}
+
+ivec2 Views::view_size() const {
+    const bool halved = options_.stereo || session_.beside();
+    return glm::max(halved ? ivec2(size_.x / 2, size_.y) : size_, ivec2(1));
+}
+
+Camera Views::camera() const {
+    Camera camera = orbit.camera();
+    const float aspect = float(view_size().x) / float(view_size().y);
+    if (aspect >= usual) return camera;
+    const float slope =
+        std::tan(0.5f * glm::radians(std::clamp(camera.angle, 1.0f, 170.0f))) * usual / aspect;
+    camera.angle = 2 * glm::degrees(std::atan(slope));
+    return camera;
+}
+
+Sight Views::sight(vec2 pixel) const {
+    const ivec2 view = view_size();
+    if (view.x < size_.x && pixel.x >= float(view.x)) pixel.x -= float(view.x);
+    return {camera(), view, pixel};
+}
+
+void Views::go_home() {
+    const Experiment& experiment = *session_.experiment();
+    orbit = Orbit(camera_of(experiment.scene(), experiment.models(), usual));
+}
+
+void Views::wake() { moved_ = now(); }
+
+Quality Views::quality(bool may_be_draft) const {
+    if (!may_be_draft || options_.care == Care::full) return {};
+    const bool hurry = context_.software() && now() - moved_ < calm;
+    return options_.care == Care::draft || hurry ? draft_quality : Quality{};
+}
+
+std::optional<float> Views::draw(const Traces& traces, bool always, bool may_be_draft) {
+    const double start = now();
+    const Experiment::Shapes before = drawn_of_;
+    const Drawing as{options_.look, view_size(), quality(may_be_draft)};
+    const bool is_drawn = options_.paused && drawn_ > moved_ && !options_.stereo && drawn_as_ == as;
+    if (always || !is_drawn) {
+        draw_panes(as.quality, traces);
+        drawn_ = start;
+        drawn_as_ = as;
+    }
+    pane_.show({left_, 0});
+    if (session_.beside()) other_pane_.show({left_ + view_size().x, 0});
+    context_.finish();
+    if (before != drawn_of_) return std::nullopt;  // it finds out how deep the grooves are
+    return float(1000 * (now() - start));
+}
+
+// Stereo shows the left view's renderer twice; the other picture goes beside it at once.
+void Views::draw_panes(const Quality& quality, const Traces& traces) {
+    const Experiment &experiment = *session_.experiment(), *beside = session_.beside();
+    drawn_of_ = experiment.shapes();
+    pane_.resize(view_size());
+    pane_.set(quality);
+    if (options_.stereo && !beside) {
+        pane_.draw(experiment, eye_of(camera(), 1), options_.look, traces);
+        pane_.show({left_ + view_size().x, 0});
+        pane_.draw(experiment, eye_of(camera(), -1), options_.look, traces);
+        return;
+    }
+    pane_.draw(experiment, camera(), options_.look, traces);
+    if (!beside) return;
+    other_pane_.resize(view_size());
+    other_pane_.set(quality);
+    other_pane_.draw(*beside, camera(), options_.look, traces);
+}
+
+Image Views::image(const Traces& traces) {
+    drawn_ = 0;  // what the panes hold then is not what the window shows
+    draw_panes({}, traces);
+    const Image left = pane_.image();
+    if (session_.beside()) return beside_each_other(left, other_pane_.image());
+    if (!options_.stereo) return left;
+    pane_.draw(*session_.experiment(), eye_of(camera(), 1), options_.look, traces);
+    return beside_each_other(left, pane_.image());
+}
+
+}  // namespace palpate
