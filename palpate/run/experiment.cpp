@@ -80,16 +80,13 @@ Prepared prepare(Models models) {
     Scene scene;
     scene.simulation = models.simulation;
     scene.simulation.colliders.clear();  // they are recipes there
-    for (const Model& model : models.models) {
-        BodyRecipe& recipe = scene.bodies.emplace_back();
-        recipe.name = model.body.name;
-        recipe.sheet = soundness(model.surface).open_edges > 0;
-    }
-    for (const Still& still : models.stills) {
-        BodyRecipe& recipe = scene.surfaces.emplace_back();
-        recipe.name = still.name;
-        recipe.sheet = soundness(still.surface).open_edges > 0;
-    }
+    auto add = [](std::vector<BodyRecipe>& recipes, const std::string& name, const Mesh& surface) {
+        BodyRecipe& recipe = recipes.emplace_back();
+        recipe.name = name;
+        recipe.sheet = soundness(surface).open_edges > 0;
+    };
+    for (const Model& model : models.models) add(scene.bodies, model.body.name, model.surface);
+    for (const Still& still : models.stills) add(scene.surfaces, still.name, still.surface);
     for (const Collider& collider : models.simulation.colliders)
         scene.colliders.emplace_back().collider = collider;
     models.pivots.resize(scene.colliders.size(), vec3(0));

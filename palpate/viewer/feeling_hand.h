@@ -1,7 +1,7 @@
 #pragma once
 #include "palpate/run/felt_hand.h"
 #include "palpate/touch/drivers.h"
-#include "palpate/viewer/holds.h"
+#include "palpate/viewer/hand.h"
 #include "palpate/viewer/message.h"
 
 #include <memory>

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <thread>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -59,7 +58,8 @@ void Session::begin(Prepared prepared) {
     auto experiment = std::make_unique<Experiment>(std::move(prepared), &context_);
     beside_.reset();
     compared_ = {};
-    replay_ = std::exchange(coming_, std::nullopt);
+    replay_.reset();
+    if (!import_) std::swap(replay_, coming_);
     experiment_ = std::move(experiment);
 }
 
