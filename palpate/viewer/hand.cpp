@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t most_threads_of_a_hold = 4;  // of the 8 drags that a body takes
+constexpr std::size_t most_threads_of_a_hold = 4;
 
 float width_of(const Body& body) { return glm::length(bounds(body.positions).size()); }
 
@@ -102,19 +102,9 @@ std::vector<Hold> Holds::all() const {
     return all;
 }
 
-bool Holds::room_for(const Experiment& experiment, const Hold& hold) const {
-    std::vector<Hold> all = this->all();
-    all.push_back(hold);
-    Hands hands;
-    for (Hold& one : all) one.add_to(hands);
-    return experiment.takes(hands);
-}
-
-bool Holds::take(const Experiment& experiment, const Hold& hold, const Sight& sight) {
-    if (!room_for(experiment, hold)) return false;
+void Holds::take(const Hold& hold, const Sight& sight) {
     own_ = hold;
     depth_ = sight.depth_of(hold.target());
-    return true;
 }
 
 void Holds::follow(const Sight& sight) {
@@ -146,15 +136,13 @@ void Holds::follow(const Experiment& experiment, const std::optional<Felt>& felt
     if (lets_go || (device_ && device_->presses() != presses)) device_.reset();
     if (lets_go || felt->time == 0) return;
     const vec3 place(felt->pose.place);
-    std::optional<Hold> begun;
     if (!device_ && presses) {
-        begun = Hold::tip(experiment, 0, place, options.tip);
+        device_ = Hold::tip(experiment, 0, place, options.tip);
     } else if (!device_ && felt->count > felt->lasting) {
         const auto touched = std::size_t(felt->surfaces[std::size_t(felt->lasting)]);
         if (touched < experiment.models().models.size())
-            begun = Hold::pulling(experiment, {.surface = touched, .place = place});
+            device_ = Hold::pulling(experiment, {.surface = touched, .place = place});
     }
-    if (begun && room_for(experiment, *begun)) device_ = begun;
     if (device_) device_->go_to(place);
 }
 

@@ -73,8 +73,8 @@ class Holds {
     std::vector<Hold> all() const;
 
     bool has_own() const { return own_.has_value(); }
-    /// The pointer's, and how deep in the picture it is. False if no more hands fit on the bodies.
-    bool take(const Experiment& experiment, const Hold& hold, const Sight& sight);
+    /// The pointer's, and how deep in the picture it is.
+    void take(const Hold& hold, const Sight& sight);
     /// It goes along with the pointer, as deep as it is; or deeper, m.
     void follow(const Sight& sight);
     void deepen(float by) { depth_ += by; }
@@ -96,8 +96,6 @@ class Holds {
     void add_to(Traces& traces, const Play& play, float tip) const;
 
  private:
-    bool room_for(const Experiment& experiment, const Hold& hold) const;
-
     std::vector<Hold> left_;
     std::optional<Hold> own_, device_;
     float depth_ = 0;  // m before the eye, of the pointer's own

@@ -163,10 +163,8 @@ void Viewer::pull_or_press(const Hit& hit) {
     const Hold hold = options.mode == Mode::pull
                           ? Hold::pulling(*experiment(), hit)
                           : Hold::pressing(*experiment(), hit, sight().ray(), options.tip);
-    if (holds_.take(*experiment(), hold, sight()))
-        drag_ = Drag::hold;
-    else
-        message_.say("no more hands fit on this body; press K to let go of those you left", true);
+    holds_.take(hold, sight());
+    drag_ = Drag::hold;
 }
 
 void Viewer::pin_at(const Hit& hit) {
