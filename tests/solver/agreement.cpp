@@ -200,8 +200,8 @@ void expect_same(Solver& solver, const Body& body, const Acting& on, const Simul
     ASSERT_FALSE(of_a.diverged || of_b.diverged || of_exact.diverged);
     ASSERT_EQ(of_a.steps, of_b.steps);
     const State ends_a = a->state(), ends_b = b->state(), truth = exact->state();
-    const double place = bound + 20 * furthest_apart(ends_b.positions, truth.positions),
-                 speed = bound / fast.step / 4 + 20 * furthest_apart(ends_b.velocities, truth.velocities);
+    const double place = bound + 10 * furthest_apart(ends_b.positions, truth.positions),
+                 speed = bound / fast.step / 4 + 10 * furthest_apart(ends_b.velocities, truth.velocities);
     EXPECT_LE(furthest_apart(ends_a.positions, truth.positions), place);
     EXPECT_LE(furthest_apart(ends_a.velocities, truth.velocities), speed);
     const Nodes seen = a->nodes(), seen_b = b->nodes();
