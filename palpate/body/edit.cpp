@@ -79,7 +79,7 @@ class Cutting {
         const bool by_cells = share == std::min(4, (left + 1) * 4 / whole);
         const int now = left == 0 ? 0 : by_cells && beside <= whole ? left * 4 / whole : share;
         set_both(grid, node, link, now);
-        if (now == 0 && glm::dot(vec3(offset), vec3(offset)) < 1.5f) set_double(grid, node, offset);
+        if (now == 0 && glm::dot(vec3(offset), vec3(offset)) < 1.5f) cut_flexion_over(grid, node, offset);
     }
 
     void set_both(GridSprings& grid, std::size_t node, std::size_t link, int quarters) {
@@ -92,7 +92,7 @@ class Cutting {
     }
 
     // The flexion springs that pass over a link along an axis go with it.
-    void set_double(GridSprings& grid, std::size_t node, ivec3 offset) {
+    void cut_flexion_over(GridSprings& grid, std::size_t node, ivec3 offset) {
         for (std::size_t l = 0; l < grid.links.size(); ++l) {
             if (grid.links[l].offset != 2 * offset) continue;
             set_both(grid, node, l, 0);

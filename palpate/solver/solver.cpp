@@ -59,23 +59,32 @@ Solver::Solver(const Body& body, const Simulation& simulation, double frequency,
 
 Solver::~Solver() = default;
 
-void Solver::check(double seconds, const Influences& influences) const {
+int Solver::steps_for(double seconds, const Influences& influences) const {
     palpate::check(seconds, influences, body_, simulation_);
-    steps_within(seconds, longest_step(influences));
+    return steps_within(seconds, longest_step(influences));
+}
+
+void Solver::remember() {
+    machine_->remember();
+    before_ = {lag_, guides_};
 }
 
 Stats Solver::step(double seconds, const Influences& influences) {
-    check(seconds, influences);
-    machine_->remember();
-    before_ = {lag_, guides_};
-    return go_on(seconds, influences);
+    const int steps = steps_for(seconds, influences);
+    remember();
+    return advance(seconds, steps, influences);
 }
 
 Stats Solver::go_on(double seconds, const Influences& influences) {
-    check(seconds, influences);
+    const int steps = steps_for(seconds, influences);
+    if (!before_) remember();
+    return advance(seconds, steps, influences);
+}
+
+Stats Solver::advance(double seconds, int steps, const Influences& influences) {
     Stats stats;
-    stats.steps = steps_within(seconds, longest_step(influences));
-    stats.step = seconds / stats.steps;
+    stats.steps = steps;
+    stats.step = seconds / steps;
     Pass constant = make_pass(body_, simulation_);
     constant.wind = vec4(influences.wind, simulation_.air);
     constant.tips = int(influences.presses.size());
@@ -167,9 +176,9 @@ BodyChange Solver::change(const Edit& edit) {
     before_.reset();
     shown_ = false;
     if (change.same_nodes() && machine_->change(change.nodes)) return change;
-    machine_.reset();  // before the next, so that memory for one is enough
-    machine_ = make_(body_, simulation_);
-    machine_->put(now);
+    std::unique_ptr<Machine> next = make_(body_, simulation_);
+    next->put(now);
+    machine_ = std::move(next);
     return change;
 }
 

@@ -55,11 +55,12 @@ class Solver final {
     /// each, or tools are so stiff that the step is above its bound, or would be too short (LongestStep).
     Stats step(double seconds, const Influences& influences = {});
 
-    /// The same, but undo() then puts back what was before the last call of step(): for a call in parts.
+    /// The same, but undo() then puts back what was before the last call of step(), if it can still do so:
+    /// for a call in parts.
     Stats go_on(double seconds, const Influences& influences = {});
 
-    /// Throws Error as step() does.
-    void check(double seconds, const Influences& influences) const;
+    /// How many steps step() would take. Throws Error as that does.
+    int steps_for(double seconds, const Influences& influences) const;
 
     /// The longest step that step() would take with these, s. Throws Error where it would refuse them.
     double longest_step(const Influences& influences = {}) const { return longest_.under(influences); }
@@ -106,6 +107,8 @@ class Solver final {
         double lag;
         Guides guides;
     };
+    void remember();
+    Stats advance(double seconds, int steps, const Influences& influences);
     std::vector<dvec3> velocities_now() const;
 
     Body body_;

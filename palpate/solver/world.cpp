@@ -83,7 +83,7 @@ WorldStats World::step(double seconds, const Acts& acts) {
     const double length = seconds / slices;
     for (int s = 0; s < slices; ++s) {
         const OneSlice slice(acts, count(), s * length, (slices - s) * length);
-        for (std::size_t b = 0; s == 0 && b < count(); ++b) solvers_[b]->check(length, slice.on(b));
+        for (std::size_t b = 0; s == 0 && b < count(); ++b) solvers_[b]->steps_for(length, slice.on(b));
         for (std::size_t b = 0; b < count() && !stats.diverged; ++b) {
             Solver& solver = *solvers_[b];
             const Stats now = s == 0 ? solver.step(length, slice.on(b)) : solver.go_on(length, slice.on(b));

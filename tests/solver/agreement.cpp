@@ -173,6 +173,12 @@ Simulation simulation(const Body& body, const Acting& on, Integrator integrator,
             .colliders = on.colliders};
 }
 
+void expect_same_bits(const State& a, const State& b) {
+    EXPECT_TRUE(a.positions == b.positions);
+    EXPECT_TRUE(a.velocities == b.velocities);
+    EXPECT_EQ(a.lag, b.lag);
+}
+
 double furthest_apart(const std::vector<dvec3>& a, const std::vector<dvec3>& b) {
     EXPECT_EQ(a.size(), b.size());
     double most = 0;

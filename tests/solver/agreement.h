@@ -41,6 +41,8 @@ Acting many_tools(const Body& body);
 Simulation simulation(const Body& body, const Acting& on, Integrator integrator, Backend backend,
                       int threads = 1);
 
+void expect_same_bits(const State& a, const State& b);
+
 double furthest_apart(const std::vector<dvec3>& a, const std::vector<dvec3>& b);
 
 /// The same steps on a backend and in the reference. Where contacts make much of little, the reference in

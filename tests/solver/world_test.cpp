@@ -1,6 +1,7 @@
 // A world is its bodies, moved by the same calls: in slices, on one team, and all or none of them.
 #include "palpate/solver/world.h"
 
+#include "palpate/solver/machine.h"
 #include "tests/integrators.h"
 #include "tests/refusal.h"
 #include "tests/solver/agreement.h"
@@ -17,12 +18,6 @@ Body pinned_box() {
 }
 
 const Simulation on_cpu{.threads = 2, .step = 0.0005, .force = true};
-
-void expect_same_bits(const State& a, const State& b) {
-    EXPECT_TRUE(a.positions == b.positions);
-    EXPECT_TRUE(a.velocities == b.velocities);
-    EXPECT_EQ(a.lag, b.lag);
-}
 
 // Everything at once on two bodies, in one slice: to the bit what two solvers do.
 TEST(World, IsItsBodies) {
@@ -107,6 +102,16 @@ TEST(World, UndoesACallOfManySlices) {
     world.step(0.01);
     world.undo();
     for (std::size_t b = 0; b < 2; ++b) expect_same_bits(world.save()[b], before[b]);
+}
+
+// The first part of a call may have come before anything that could be put back.
+TEST(World, ASolverThatGoesOnRemembersWhereItBegan) {
+    Solver solver(pinned_box(), {.step = 0.0001, .force = true}, 0, make_reference<float>);
+    State wild = solver.save();
+    wild.velocities[50] = {300, 0, 0};
+    solver.restore(wild);
+    EXPECT_TRUE(solver.go_on(0.01).diverged);
+    expect_same_bits(solver.save(), wild);
 }
 
 // What one body refuses moves none.
