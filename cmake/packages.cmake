@@ -23,7 +23,6 @@ pkg_check_modules(draco REQUIRED IMPORTED_TARGET GLOBAL draco)
 palpate_needs(meshoptimizer)
 palpate_needs(Boost COMPONENTS iostreams)
 palpate_needs(GDCM)
-palpate_needs(TBB)
 palpate_needs(OpenVDB)
 
 # gl

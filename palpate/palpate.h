@@ -9,6 +9,7 @@
 #include "palpate/base/memory.h"
 #include "palpate/base/names.h"
 #include "palpate/base/nearest.h"
+#include "palpate/base/parallel.h"
 #include "palpate/base/pose.h"
 #include "palpate/base/progress.h"
 #include "palpate/base/realtime.h"

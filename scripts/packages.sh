@@ -5,7 +5,7 @@ build_packages=(
     libglm-dev libfmt-dev                                                     # vectors, text
     libhwy-dev                                                                # as many numbers at once as the CPU can
     libgdcm-dev                                                               # DICOM
-    libopenvdb-dev libboost-iostreams-dev libtbb-dev                          # solids, archives
+    libopenvdb-dev libboost-iostreams-dev                                     # solids, archives
     libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures
     libexpat1-dev libzip-dev libdraco-dev                                     # surfaces that are XML, or packed
     libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver

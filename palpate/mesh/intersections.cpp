@@ -1,9 +1,8 @@
 #include "palpate/mesh/intersections.h"
 
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/face_pairs.h"
 #include "palpate/mesh/repair.h"
-
-#include <tbb/parallel_for.h>
 
 #include <array>
 #include <cmath>
@@ -87,8 +86,8 @@ class Planes {
  public:
     Planes(const Tree& tree, double touch)
         : plates_(tree.plates()), thickness_(tree.nodes.size()), touch_(touch) {
-        tbb::parallel_for(std::size_t(0), thickness_.size(),
-                          [&](std::size_t i) { thickness_[i] = thickness(tree, tree.nodes[i], plates_[i]); });
+        parallel_for(thickness_.size(), 1024,
+                     [&](std::size_t i) { thickness_[i] = thickness(tree, tree.nodes[i], plates_[i]); });
     }
 
     // Whether all faces of two nodes lie in one plane, where none can cut another.
@@ -163,8 +162,8 @@ Intersections intersections(const Tree& tree, std::size_t most) {
     const dvec3 size = dvec3(tree.nodes[0].high) - dvec3(tree.nodes[0].low);
     const double touch = 1e-6 * std::max({size.x, size.y, size.z});
     std::vector<Triangle> triangles(tree.faces.size());
-    tbb::parallel_for(std::size_t(0), triangles.size(),
-                      [&](std::size_t i) { triangles[i] = triangle(mesh, tree.faces[i]); });
+    parallel_for(triangles.size(), 4096,
+                 [&](std::size_t i) { triangles[i] = triangle(mesh, tree.faces[i]); });
 
     const Planes planes(tree, touch);
     const std::size_t most_looks = most_looks_at(mesh);
@@ -177,7 +176,7 @@ Intersections intersections(const Tree& tree, std::size_t most) {
             share.waiting.push_back(waiting.back());
             waiting.pop_back();
         }
-        tbb::parallel_for(std::size_t(0), shares.size(), [&](std::size_t i) {
+        parallel_for(shares.size(), 1, [&](std::size_t i) {
             Share& share = shares[i];
             for_each_pair_of_leaves(
                 tree, share.waiting, 0, [&](Index a, Index b) { return planes.in_one_plane(a, b); },

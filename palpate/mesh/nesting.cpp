@@ -1,8 +1,7 @@
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/parts.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/mesh/winding_number.h"
-
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
@@ -42,7 +41,7 @@ Arrangement::Around surroundings(const Mesh& mesh, const Parts& part, const Tree
         return most == least ? std::optional(most) : std::nullopt;
     };
     Arrangement::Around result(part.count);
-    tbb::parallel_for(Index(0), part.count, [&](Index i) { result[i] = around(faces[i]); });
+    parallel_for(part.count, 1, [&](std::size_t i) { result[i] = around(faces[i]); });
     return result;
 }
 

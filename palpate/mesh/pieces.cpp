@@ -1,12 +1,11 @@
 #include "palpate/mesh/pieces.h"
 
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/face_pairs.h"
 #include "palpate/mesh/intersections.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/mesh/triangle.h"
 #include "palpate/mesh/winding_number.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -162,7 +161,7 @@ double counted_volume(const Mesh& mesh, const std::vector<Index>& faces, const B
     const ivec3 dims = glm::max(ivec3(glm::ceil(size / spacing_of(size, points))), ivec3(1));
     const dvec3 step = size / dvec3(dims);
     std::atomic<std::size_t> inside = 0;
-    tbb::parallel_for(std::int64_t(0), std::int64_t(dims.z) * dims.y, [&](std::int64_t row) {
+    parallel_for(std::size_t(dims.z) * dims.y, 8, [&](std::size_t row) {
         std::size_t in_row = 0;
         for (int x = 0; x < dims.x; ++x)
             in_row += winding.at(dvec3(box.low) + step * (dvec3(x, row % dims.y, row / dims.y) + 0.5)) > 0.5;
@@ -211,7 +210,7 @@ void measure(const Mesh& mesh, const Parts& part, Pieces& found) {
         ++counted;
     }
     const double least = std::clamp(most_in_all / double(counted), least_of_many, least_points);
-    tbb::parallel_for(Index(0), count, [&](Index piece) {
+    parallel_for(count, 1, [&](std::size_t piece) {
         const double own = room(box[piece]);
         if (!count_points[piece] || !(own > 0)) return;
         const double points = std::max(std::min(most_points * own / largest, most_in_all * own / all), least);

@@ -1,12 +1,12 @@
 #include "palpate/mesh/remake.h"
 
 #include "palpate/base/error.h"
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/isosurface.h"
 #include "palpate/mesh/parts.h"
 #include "palpate/mesh/winding_number.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
@@ -272,11 +272,13 @@ Remade remake(const Mesh& mesh, float voxel, const std::string& name, const Prog
     const ivec3 blocks = (depths.dims + block - 1) / block;
     for (int z = 0; z < blocks.z; ++z) {
         if (progress) progress("making a solid by voxels", double(z) / blocks.z);
-        tbb::parallel_for(0, blocks.y * blocks.x,
-                          [&](int i) { filler.fill(block * ivec3(i % blocks.x, i / blocks.x, z), block); });
+        parallel_for(std::size_t(blocks.y) * blocks.x, 1, [&](std::size_t i) {
+            filler.fill(block * ivec3(int(i) % blocks.x, int(i) / blocks.x, z), block);
+        });
     }
-    tbb::parallel_for(1, depths.dims.z - 1, [&](int z) { filler.find_border(z); });
-    tbb::parallel_for(1, depths.dims.z - 1, [&](int z) { filler.measure_border(z); });
+    const std::size_t layers = depths.dims.z - 2;
+    parallel_for(layers, 1, [&](std::size_t i) { filler.find_border(int(i) + 1); });
+    parallel_for(layers, 1, [&](std::size_t i) { filler.measure_border(int(i) + 1); });
 
     // A sheet has points inside by rounding at most.
     if (!(*std::max_element(depths.values.begin(), depths.values.end()) > 0.25f)) throw nothing;

@@ -1,7 +1,6 @@
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/corners.h"
 #include "palpate/mesh/repair.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <vector>
@@ -43,7 +42,7 @@ Neighbours neighbours(const Mesh& mesh) {
 
 // Moves every vertex by `step` of the way to the mean of its neighbours.
 void move_to_mean(const Neighbours& near, float step, const std::vector<vec3>& from, std::vector<vec3>& to) {
-    tbb::parallel_for(std::size_t(0), from.size(), [&](std::size_t v) {
+    parallel_for(from.size(), 8192, [&](std::size_t v) {
         vec3 sum(0);
         const Index first = near.first[v], last = near.first[v + 1];
         for (Index i = first; i < last; ++i) sum += from[near.vertices[i]];

@@ -1,9 +1,8 @@
 #include "palpate/mesh/soundness.h"
 
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/parts.h"
 #include "palpate/mesh/repair.h"
-
-#include <tbb/parallel_invoke.h>
 
 #include <unordered_map>
 
@@ -86,9 +85,9 @@ void look_at_parts(const Mesh& mesh, Soundness& found) {
 
 Soundness soundness(const Mesh& mesh) {
     Soundness found;  // to which each adds what no other does
-    tbb::parallel_invoke([&] { look_at_edges(mesh, found); }, [&] { look_at_faces(mesh, found); },
-                         [&] { look_at_parts(mesh, found); },
-                         [&] { found.one_sided_parts = one_sided_parts(mesh); });
+    parallel_invoke([&] { look_at_edges(mesh, found); }, [&] { look_at_faces(mesh, found); },
+                    [&] { look_at_parts(mesh, found); },
+                    [&] { found.one_sided_parts = one_sided_parts(mesh); });
     return found;
 }
 

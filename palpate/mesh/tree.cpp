@@ -1,9 +1,7 @@
 #include "palpate/mesh/tree.h"
 
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/triangle.h"
-
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <cmath>
 #include <numeric>
@@ -30,7 +28,7 @@ class Halving {
  public:
     explicit Halving(Tree& tree) : mesh_(tree.mesh), tree_(tree), placed_(tree.faces.size()) {
         tree.nodes.resize(nodes_over(Index(tree.faces.size())).first);
-        tbb::parallel_for(std::size_t(0), placed_.size(), [&](std::size_t i) {
+        parallel_for(placed_.size(), 16384, [&](std::size_t i) {
             const uvec3 t = mesh_.triangles[tree.faces[i]];
             placed_[i] = {
                 mesh_.positions[t.x] / 3.0f + mesh_.positions[t.y] / 3.0f + mesh_.positions[t.z] / 3.0f,
@@ -56,7 +54,7 @@ class Halving {
         const auto first_half = [&] { halve(node + 1, first, half); };
         const auto second_half = [&] { halve(here.second, first + half, count - half); };
         if (count > worth_sharing) {
-            tbb::parallel_invoke(first_half, second_half);
+            parallel_invoke(first_half, second_half);
         } else {
             first_half();
             second_half();
@@ -117,7 +115,7 @@ std::vector<Tree::Plate> Tree::plates() const {
     std::vector<Plate> plates(nodes.size());
     std::vector<double> size(nodes.size());  // m², whichever way faces look
     // First `centre` is the sum of the faces' own, each by its size.
-    tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) {
+    parallel_for(nodes.size(), 4096, [&](std::size_t i) {
         if (nodes[i].second == 0) size[i] = add_faces(nodes[i], plates[i]);
     });
     for (std::size_t i = nodes.size(); i-- > 0;) {  // halves stand behind what they are halves of
@@ -128,7 +126,7 @@ std::vector<Tree::Plate> Tree::plates() const {
             size[i] += size[half];
         }
     }
-    tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) {
+    parallel_for(nodes.size(), 4096, [&](std::size_t i) {
         const dvec3 low(nodes[i].low), high(nodes[i].high);
         dvec3& centre = plates[i].centre;
         centre = size[i] > 0 ? centre / size[i] : 0.5 * (low + high);

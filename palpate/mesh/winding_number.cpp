@@ -1,6 +1,6 @@
 #include "palpate/mesh/winding_number.h"
 
-#include <tbb/parallel_for.h>
+#include "palpate/base/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +61,7 @@ double solid_angle(dvec3 point, dvec3 a, dvec3 b, dvec3 c) {
 double exact_winding(const Mesh& mesh, std::span<const Index> faces, dvec3 point) {
     constexpr std::size_t at_once = 4096;
     std::vector<double> sums((faces.size() + at_once - 1) / at_once);
-    tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t i) {
+    parallel_for(sums.size(), 1, [&](std::size_t i) {
         Angles angles;
         for (Index face : faces.subspan(i * at_once, std::min(at_once, faces.size() - i * at_once))) {
             const uvec3 t = mesh.triangles[face];
@@ -85,7 +85,7 @@ struct WindingNumber::Sum {
 
 WindingNumber::WindingNumber(const Tree& tree)
     : tree_(tree), plates_(tree.plates()), faces_(tree.faces.size()) {
-    tbb::parallel_for(std::size_t(0), faces_.size(), [&](std::size_t i) {
+    parallel_for(faces_.size(), 4096, [&](std::size_t i) {
         const uvec3 t = tree.mesh.triangles[tree.faces[i]];
         const dvec3 a(tree.mesh.positions[t.x]), b(tree.mesh.positions[t.y]), c(tree.mesh.positions[t.z]),
             centre = (a + b + c) / 3.0;

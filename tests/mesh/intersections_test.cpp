@@ -1,10 +1,10 @@
 #include "palpate/mesh/intersections.h"
 
+#include "palpate/base/parallel.h"
 #include "palpate/mesh/soundness.h"
 #include "tests/mesh/shapes.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <set>
 
@@ -130,7 +130,7 @@ TEST(Intersections, AreTheSameByAnyNumberOfThreads) {
     const Mesh two = both(sphere(vec3(0), 1, 6), sphere(vec3(0.5f), 1, 6));
     for (std::size_t most : {std::size_t(10), std::size_t(1'000'000)}) {
         const Intersections by_many = intersections(two, most);
-        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        const Processors one(1);
         const Intersections by_one = intersections(two, most);
         EXPECT_EQ(by_many.faces, by_one.faces);
         EXPECT_EQ(by_many.all, by_one.all);

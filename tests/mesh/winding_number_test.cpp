@@ -1,9 +1,9 @@
 #include "palpate/mesh/winding_number.h"
 
+#include "palpate/base/parallel.h"
 #include "tests/mesh/shapes.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 namespace palpate {
 namespace {
@@ -178,7 +178,7 @@ TEST(Tree, HalvesItsFacesBetweenTheirBoxes) {
 TEST(Tree, IsTheSameByAnyNumberOfThreads) {
     const Mesh mesh = torus(1.2f, 0.5f, 300, 201);
     const Tree by_many(mesh);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Processors one(1);
     const Tree by_one(mesh);
     EXPECT_EQ(by_many.faces, by_one.faces);
     ASSERT_EQ(by_many.nodes.size(), by_one.nodes.size());
