@@ -28,7 +28,8 @@ thread_local Processors::Free* shared = nullptr;
 
 class Sharing {
  public:
-    Sharing(std::size_t count, const std::function<void(std::size_t)>& piece) : count_(count), piece_(piece) {}
+    Sharing(std::size_t count, const std::function<void(std::size_t)>& piece)
+        : count_(count), piece_(piece) {}
 
     void share_out() {
         std::vector<std::jthread> helpers;
