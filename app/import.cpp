@@ -4,8 +4,8 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/files.h"
 #include "palpate/base/memory.h"
-#include "palpate/mesh/read.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/read.h"
+#include "palpate/files/write.h"
 #include "palpate/scene/surface.h"
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 #include "bench/deformations.h"
 #include "bench/studies.h"
-#include "palpate/mesh/read.h"
+#include "palpate/files/read.h"
 #include "palpate/mesh/repair.h"
 
 #include <fmt/format.h>

@@ -11,7 +11,7 @@
 #include "palpate/body/embedding.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/mesh/read.h"
+#include "palpate/files/read.h"
 #include "palpate/scene/surface.h"
 #include "palpate/solver/solver.h"
 

@@ -1,5 +1,5 @@
 # find_package(palpate) in a program outside: the targets palpate::palpate (all of it) and palpate::FLOOR (one floor
-# with those below it: base, mesh, body, scene, solver, touch, gl, render, run, viewer).
+# with those below it: base, mesh, voxels, files, body, scene, solver, touch, gl, render, run, viewer).
 include(CMakeFindDependencyMacro)
 macro(palpate_needs)
     find_dependency(${ARGV})

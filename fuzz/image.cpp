@@ -1,8 +1,7 @@
 // Any bytes as a PNG or a JPEG: an Error, or an image that is whole. A PNG's checksums are made right first:
 // no fuzzer would guess them.
-#include "palpate/mesh/image.h"
-
 #include "palpate/base/error.h"
+#include "palpate/files/image_file.h"
 
 #include <zlib.h>
 

@@ -1,6 +1,6 @@
 // Any bytes as a mesh of the format PALPATE_FORMAT: an Error, or a mesh that is sound.
 #include "palpate/base/error.h"
-#include "palpate/mesh/read.h"
+#include "palpate/files/read.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,8 +1,8 @@
 // Any bytes as a volume of the format PALPATE_FORMAT: an Error, or a volume that is sound. Of DICOM they are
 // one file of two; the other is the slice PALPATE_BESIDE.
 #include "palpate/base/error.h"
+#include "palpate/files/read.h"
 #include "palpate/mesh/histogram.h"
-#include "palpate/mesh/read.h"
 
 #include <unistd.h>
 

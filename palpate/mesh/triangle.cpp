@@ -36,15 +36,15 @@ Vector nearest(Vector p, Vector a, Vector b, Vector c) {
     return best;
 }
 
-using Corners = std::array<dvec3, 3>;
+using ThreePoints = std::array<dvec3, 3>;
 
-double distance(dvec3 p, const Corners& t) {
+double distance(dvec3 p, const ThreePoints& t) {
     const dvec3 w = nearest_weights(p, t[0], t[1], t[2]);
     return glm::distance(p, w.x * t[0] + w.y * t[1] + w.z * t[2]);
 }
 
 // Whether a segment passes a triangle's plane no farther than `reach` from it.
-bool passes(dvec3 from, dvec3 to, const Corners& t, double reach) {
+bool passes(dvec3 from, dvec3 to, const ThreePoints& t, double reach) {
     const dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
     const double start = glm::dot(normal, from - t[0]), end = glm::dot(normal, to - t[0]);
     return start != end && start * end <= 0 &&
@@ -52,9 +52,9 @@ bool passes(dvec3 from, dvec3 to, const Corners& t, double reach) {
 }
 
 // Whether two segments come that near where neither has an end.
-bool boxes_are_near(const Corners& a, const Corners& b, double reach) {
-    const auto low = [](const Corners& c) { return glm::min(glm::min(c[0], c[1]), c[2]); };
-    const auto high = [](const Corners& c) { return glm::max(glm::max(c[0], c[1]), c[2]); };
+bool boxes_are_near(const ThreePoints& a, const ThreePoints& b, double reach) {
+    const auto low = [](const ThreePoints& c) { return glm::min(glm::min(c[0], c[1]), c[2]); };
+    const auto high = [](const ThreePoints& c) { return glm::max(glm::max(c[0], c[1]), c[2]); };
     return glm::all(glm::lessThanEqual(low(a), high(b) + reach)) &&
            glm::all(glm::lessThanEqual(low(b), high(a) + reach));
 }
@@ -70,7 +70,7 @@ bool sides_are_near(dvec3 p, dvec3 q, dvec3 r, dvec3 s, double reach) {
 
 }  // namespace
 
-bool are_near(const Corners& a, const Corners& b, double reach) {
+bool are_near(const ThreePoints& a, const ThreePoints& b, double reach) {
     if (!boxes_are_near(a, b, reach)) return false;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;

@@ -3,7 +3,7 @@
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
 #include "palpate/gl/program.h"
-#include "palpate/mesh/clusters.h"
+#include "palpate/render/clusters.h"
 #include "palpate/render/renderer.h"
 #include "palpate/render/view.h"
 

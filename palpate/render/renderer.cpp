@@ -4,7 +4,6 @@
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
 #include "palpate/gl/visit.h"
-#include "palpate/mesh/thinned.h"
 #include "palpate/render/culling.h"
 #include "palpate/render/gpu_dents.h"
 #include "palpate/render/gpu_embedding.h"
@@ -16,6 +15,7 @@
 #include "palpate/render/target.h"
 #include "palpate/render/unit_ball.h"
 #include "palpate/render/view.h"
+#include "palpate/voxels/thinned.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "palpate/render/shapes.h"
 
-#include "palpate/mesh/isosurface.h"
+#include "palpate/voxels/isosurface.h"
 
 #include <cmath>
 #include <numbers>

@@ -2,6 +2,7 @@
 
 #include "palpate/base/clock.h"
 #include "palpate/base/files.h"
+#include "palpate/files/image_file.h"
 #include "palpate/gl/context.h"
 #include "palpate/run/framing.h"
 

@@ -1,8 +1,8 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/base/nearest.h"
-#include "palpate/mesh/ending.h"
-#include "palpate/mesh/read.h"
+#include "palpate/files/ending.h"
+#include "palpate/files/read.h"
 #include "palpate/scene/scene.h"
 
 #include <fmt/format.h>

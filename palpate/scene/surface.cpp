@@ -1,14 +1,14 @@
 #include "palpate/scene/surface.h"
 
 #include "palpate/base/error.h"
+#include "palpate/files/read.h"
 #include "palpate/mesh/histogram.h"
 #include "palpate/mesh/intersections.h"
-#include "palpate/mesh/isosurface.h"
 #include "palpate/mesh/parts.h"
-#include "palpate/mesh/read.h"
 #include "palpate/mesh/repair.h"
 #include "palpate/mesh/tree.h"
 #include "palpate/mesh/winding_number.h"
+#include "palpate/voxels/isosurface.h"
 
 #include <fmt/format.h>
 

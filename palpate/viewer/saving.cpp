@@ -1,7 +1,7 @@
 #include "palpate/viewer/saving.h"
 
 #include "palpate/base/files.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/write.h"
 #include "palpate/viewer/session.h"
 
 #include <fmt/format.h>

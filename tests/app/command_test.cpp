@@ -3,7 +3,7 @@
 
 #include "palpate/base/files.h"
 #include "palpate/base/pipe.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/write.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 

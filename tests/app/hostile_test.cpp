@@ -2,9 +2,9 @@
 // What hangs is ended after a minute of the processor's time, a hundred times as long as any of them takes.
 // Formats have tests of their own; here the whole way from file to solid is walked.
 #include "palpate/base/files.h"
-#include "palpate/mesh/read.h"
+#include "palpate/files/read.h"
+#include "palpate/files/write.h"
 #include "palpate/mesh/repair.h"
-#include "palpate/mesh/write.h"
 #include "tests/app/command.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"

@@ -1,7 +1,7 @@
 #include "palpate/mesh/histogram.h"
 
 #include "palpate/base/error.h"
-#include "palpate/mesh/isosurface.h"
+#include "palpate/voxels/isosurface.h"
 #include "tests/mesh/shapes.h"
 
 #include <gtest/gtest.h>

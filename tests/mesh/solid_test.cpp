@@ -1,8 +1,8 @@
 #include "palpate/mesh/solid.h"
 
 #include "palpate/mesh/repair.h"
-#include "tests/mesh/reading.h"
 #include "tests/mesh/shapes.h"
+#include "tests/refusal.h"
 
 #include <gtest/gtest.h>
 

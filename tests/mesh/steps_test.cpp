@@ -1,6 +1,6 @@
-#include "palpate/mesh/isosurface.h"
-#include "palpate/mesh/read.h"
+#include "palpate/files/read.h"
 #include "palpate/mesh/repair.h"
+#include "palpate/voxels/isosurface.h"
 #include "tests/mesh/shapes.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "bench/deformations.h"
 #include "palpate/base/error.h"
 #include "palpate/gl/context.h"
-#include "palpate/mesh/clusters.h"
+#include "palpate/render/clusters.h"
 #include "palpate/render/renderer.h"
 #include "tests/gl/with_context.h"
 #include "tests/render/gpu.h"

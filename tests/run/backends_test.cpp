@@ -1,7 +1,7 @@
 // A run looks the same and reports the same on every backend.
 #include "palpate/base/error.h"
+#include "palpate/files/image_file.h"
 #include "palpate/gl/context.h"
-#include "palpate/mesh/image.h"
 #include "palpate/run/run.h"
 #include "tests/scratch.h"
 

@@ -3,7 +3,7 @@
 
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/write.h"
 #include "palpate/run/run.h"
 #include "tests/refusal.h"
 #include "tests/scratch.h"

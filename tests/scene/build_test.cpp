@@ -3,9 +3,9 @@
 
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
-#include "palpate/mesh/image.h"
-#include "palpate/mesh/read.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/image_file.h"
+#include "palpate/files/read.h"
+#include "palpate/files/write.h"
 #include "tests/refusal.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"

@@ -2,7 +2,7 @@
 #include "palpate/scene/surface.h"
 
 #include "palpate/base/files.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/write.h"
 #include "tests/refusal.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"

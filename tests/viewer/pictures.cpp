@@ -1,7 +1,7 @@
 // Draws the viewer's window as docs/viewer.md and the README show it, on a display that nobody sees.
 //   viewer_pictures FOLDER
 #include "palpate/base/files.h"
-#include "palpate/mesh/image.h"
+#include "palpate/files/image_file.h"
 #include "palpate/viewer/window.h"
 #include "tests/viewer/display.h"
 

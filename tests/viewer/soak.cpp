@@ -4,7 +4,7 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/write.h"
 #include "palpate/viewer/window.h"
 #include "tests/shapes.h"
 #include "tests/viewer/display.h"

@@ -6,7 +6,7 @@
 #include "palpate/body/hull.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/mesh/write.h"
+#include "palpate/files/write.h"
 #include "palpate/viewer/gui.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"

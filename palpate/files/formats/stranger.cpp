@@ -1,0 +1,33 @@
+#include "palpate/files/formats/stranger.h"
+
+#include "palpate/base/error.h"
+
+namespace palpate {
+namespace {
+
+struct Stranger {
+    std::string_view start, what, remedy;
+};
+
+constexpr Stranger strangers[] = {
+    {"version https://git-lfs", "a Git LFS pointer, not the file itself,", "fetch it with git lfs pull"},
+    {"<!DOCTYPE html", "a web page, not the file itself,", "download the file itself"},
+    {"<!doctype html", "a web page, not the file itself,", "download the file itself"},
+    {"<html", "a web page, not the file itself,", "download the file itself"},
+    {"ISO-10303-21", "a STEP file, which has no triangles,", "export it as .stl"},
+    {"BZh", "a file packed by bzip2", "unpack it first"},
+    {"\xfd"
+     "7zXZ",
+     "a file packed by xz", "unpack it first"},
+    {"\x28\xb5\x2f\xfd", "a file packed by zstd", "unpack it first"},
+    {"7z\xbc\xaf\x27\x1c", "a 7z archive", "unpack it first"},
+    {"Rar!\x1a\x07", "a RAR archive", "unpack it first"}};
+
+}  // namespace
+
+void refuse_strangers(std::string_view bytes, const std::string& name) {
+    for (const auto& [start, what, remedy] : strangers)
+        if (bytes.starts_with(start)) throw Error(what, name, remedy);
+}
+
+}  // namespace palpate

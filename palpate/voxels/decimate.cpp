@@ -1,0 +1,20 @@
+#include "palpate/mesh/corners.h"
+#include "palpate/mesh/repair.h"
+#include "palpate/voxels/thinned.h"
+
+namespace palpate {
+
+std::size_t decimate(Mesh& mesh, std::size_t faces) {
+    const std::size_t before = mesh.triangles.size();
+    if (before <= faces) return 0;
+    mesh.triangles = simplified(mesh, faces);
+    drop_attributes(mesh);
+    // meshoptimizer collapses edges without asking whether a tunnel or a thin neck closes, so two things are
+    // left where one did: a face lying on the back of another, and an edge in which two sheets touch.
+    drop_flaps(mesh);
+    part_sheets(mesh);
+    drop_unused(mesh);
+    return before - mesh.triangles.size();
+}
+
+}  // namespace palpate
