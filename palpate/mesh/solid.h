@@ -22,8 +22,9 @@ class SignedDistance {
     /// The distances at the points origin + spacing · (i, j, k), x fastest, by trilinear interpolation.
     std::vector<float> sample(vec3 origin, float spacing, ivec3 dims) const;
 
+    struct Grid;  // of voxels
+
  private:
-    struct Grid;  // keeps OpenVDB's headers in one .cpp
     std::unique_ptr<Grid> grid_;
 };
 

@@ -3,6 +3,7 @@
 #include "palpate/base/parallel.h"
 #include "palpate/mesh/triangle.h"
 
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -92,8 +93,9 @@ class Halving {
     std::vector<Placed> placed_;  // only the tree's own, which may be few of the mesh
 };
 
-float distance_squared(const Tree::Node& node, vec3 p) {
-    const vec3 off = glm::max(glm::max(node.low - p, p - node.high), vec3(0));
+// From a box. Inlined because most of the time of a question is spent here.
+[[gnu::always_inline]] inline float distance_squared(vec3 low, vec3 high, vec3 p) {
+    const vec3 off = glm::max(glm::max(low - p, p - high), vec3(0));
     return glm::dot(off, off);
 }
 
@@ -158,21 +160,23 @@ Tree::Nearest Tree::nearest(vec3 p, float most, Index guess) const {
     auto look_at = [&](Index other) {
         const uvec3 t = mesh.triangles[other];
         const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        // Its box is looked at first, which takes a tenth of the time and rules out most.
+        if (!(distance_squared(glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c), p) < best)) return;
         const vec3 weights = nearest_weights(p, a, b, c);
         const vec3 off = weights.x * a + weights.y * b + weights.z * c - p;
         const float squared = glm::dot(off, off);
         if (squared < best) best = squared, face = other;
     };
     if (guess != none) look_at(guess);
-    std::vector<Wait> stack;
-    auto push = [&](Index node) {
-        const float squared = distance_squared(nodes[node], p);
-        if (squared < best) stack.push_back({node, squared});
+    std::array<Wait, 64> stack;  // deeper than a tree can be
+    std::size_t waiting = 0;
+    auto push = [&](Index node, float squared) {
+        if (squared < best) stack[waiting++] = {node, squared};
     };
-    if (!nodes.empty()) push(0);
-    while (!stack.empty()) {
-        const Wait wait = stack.back();
-        stack.pop_back();
+    auto squared_to = [&](Index node) { return distance_squared(nodes[node].low, nodes[node].high, p); };
+    if (!nodes.empty()) push(0, squared_to(0));
+    while (waiting > 0) {
+        const Wait wait = stack[--waiting];
         if (!(wait.squared < best)) continue;
         const Node& node = nodes[wait.node];
         if (node.second == 0) {
@@ -180,9 +184,10 @@ Tree::Nearest Tree::nearest(vec3 p, float most, Index guess) const {
             continue;
         }
         // The nearer half last, so that it is looked at first.
-        const bool swap = distance_squared(nodes[wait.node + 1], p) < distance_squared(nodes[node.second], p);
-        push(swap ? node.second : wait.node + 1);
-        push(swap ? wait.node + 1 : node.second);
+        const Wait first{wait.node + 1, squared_to(wait.node + 1)},
+            second{node.second, squared_to(node.second)};
+        const bool swap = first.squared < second.squared;
+        for (const Wait& half : {swap ? second : first, swap ? first : second}) push(half.node, half.squared);
     }
     return {face == none ? most : std::sqrt(best), face};
 }
