@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-Solver::MakeMachine machine_for(Backend backend, const gl::Context* context, Team* team) {
+Solver::MakeMachine machine_for(Backend backend, [[maybe_unused]] const gl::Context* context, Team* team) {
     switch (backend) {
         case Backend::reference:
             return make_reference<float>;
