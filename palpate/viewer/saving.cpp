@@ -1,6 +1,7 @@
 #include "palpate/viewer/saving.h"
 
 #include "palpate/base/files.h"
+#include "palpate/files/image_file.h"
 #include "palpate/files/write.h"
 #include "palpate/viewer/session.h"
 
