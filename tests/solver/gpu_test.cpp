@@ -89,13 +89,16 @@ TEST_P(EveryWay, IsTheReferenceOnOddSizes) {
     }
 }
 
-// The two obstacles that everything() lacks.
+// The two obstacles that everything() lacks. As there, no node lies where the way out is left to rounding: in
+// the middle plane of the ellipsoid.
 TEST_P(EveryWay, IsTheReferenceOnPolygonsAndFields) {
+    Mesh egg = ellipsoid({0.01f, 0.02f, 0.015f}, 12);
+    for (vec3& p : egg.positions) p += vec3(0.0021f, 0.0034f, -0.0019f);
     const vec3 a(-1, 0.004f, -1), b(1, -0.012f, -1), c(0, 0.003f, 1);
     const std::vector<Collider> shapes = {
         {Polygon{{{a, b, c}, {a, c, vec3(-1, 0.1f, 1)}}}, 0.5f},
         {distance_field(block({-0.02f, -0.02f, -0.02f}, {0.0312f, 0.0053f, 0.0307f}), 0.003f), 0.5f},
-        {distance_field(ellipsoid({0.01f, 0.02f, 0.015f}, 12), 0.002f), 0.2f, 0.001f}};
+        {distance_field(egg, 0.002f), 0.2f, 0.001f}};
     for (const Body& body : {lattice({4, 3, 5}, 0.01f, tissue), cloth({7, 8}, 0.01f, linen)}) {
         Acting on;
         on.colliders = shapes;
