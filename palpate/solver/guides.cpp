@@ -4,12 +4,12 @@
 
 namespace palpate {
 
-Guides::Guides(const Body& body) : guide_of_(body.count(), -1) {
+Guides::Guides(const Body& body, dvec3 origin) : guide_of_(body.count(), -1) {
     for (std::size_t i = 0; i < body.count(); ++i) {
         if (body.inverse_mass[i] > 0) continue;
         guide_of_[i] = int(guides_.size());
         guides_.push_back({.node = int(i)});
-        at_.push_back(dvec3(body.positions[i]));
+        at_.push_back(origin + dvec3(body.positions[i]));
     }
 }
 
@@ -23,7 +23,7 @@ void Guides::tell(State& state) const {
 
 std::span<const Guide> Guides::lead(const Influences& influences, double seconds) {
     const double arrival = std::max(influences.arrival, seconds);
-    for (Guide& guide : guides_) guide = {.node = guide.node};
+    for (std::size_t g = 0; g < guides_.size(); ++g) guides_[g] = {.node = guides_[g].node, .to = at_[g]};
     for (const Move& move : influences.moves)
         for (std::size_t k = 0; k < move.nodes.size(); ++k) {
             const int g = guide_of_[std::size_t(move.nodes[k])];

@@ -12,14 +12,15 @@ struct Guide {
     int node;
     dvec3 velocity = dvec3(0);  // m/s
     dvec3 to = dvec3(0);        // m, where the call leaves it, which takes the rounding of many steps away,
-    bool is_led = false;        // if a Move names it; else it stands
+    bool is_led = false;        // unless it does not move
 };
 
 /// The guides of all nodes of inverse mass 0, in their order. It remembers where they stand, so that nobody
 /// has to ask the machine.
 class Guides {
  public:
-    explicit Guides(const Body& body);
+    /// `origin`: m, of the body's places.
+    Guides(const Body& body, dvec3 origin);
 
     /// The nodes are there now.
     void stand(const State& state);

@@ -16,20 +16,22 @@ class Team;
 
 /// What a machine found out during a call.
 struct Findings {
-    bool torn = false;                         // the motion has blown up
-    double largest_speed = 0;                  // m/s, of any node at the end
-    double largest_move = 0;                   // m, of any node in the last step
-    std::vector<dvec3> by_presses, by_pushes;  // N s that each gave to the nodes
+    bool torn = false;                                       // the motion has blown up
+    double largest_speed = 0;                                // m/s, of any node at the end, in the world
+    double largest_move = 0;                                 // m, of any node in the last step, in the world
+    dvec3 first_node = dvec3(0), first_velocity = dvec3(0);  // m and m/s, at the end
+    std::vector<dvec3> by_presses, by_pushes;                // N s that each gave to the nodes
 };
 
 /// Where the nodes of a body live and how they are gone over: memory and loops, which is all that backends
-/// differ in. What a step is stands in Solver and Call; what a node does, in node.inl.
+/// differ in. What a step is stands in Solver and Call; what a node does, in node.inl. Places and velocities
+/// are counted from an origin that the solver chooses (origin.h). Before all else a state is put.
 class Machine {
  public:
     virtual ~Machine() = default;
 
-    /// These nodes' springs, masses or outsides are others now, which the body says. False, and nothing has
-    /// changed, where it cannot lay them where they lie.
+    /// These nodes' springs, masses or outsides are others now, which the body says; the state is put next.
+    /// False, and nothing has changed, where it cannot lay them where they lie.
     virtual bool change(std::span<const int> nodes) {
         static_cast<void>(nodes);
         return false;
@@ -39,18 +41,22 @@ class Machine {
     virtual Findings run(const Call& call) = 0;
 
     /// The current state, as it lies in memory: exact, so that get() after put() is what was put.
-    virtual void put(const State& state) = 0;
+    virtual void put(const State& state, const Origin& origin) = 0;
     virtual State get() const = 0;
+
+    /// Takes this off all places, m, and velocities, m/s: they are counted from another origin now.
+    virtual void shift(dvec3 place, dvec3 velocity) = 0;
 
     /// To the field `before`, or back from there: the current state before a call.
     virtual void remember() = 0;
-    virtual void bring_back() = 0;
+    virtual void bring_back(const Origin& origin) = 0;
 
-    /// The velocities of the current state, were the springs, gravity and damping to act for `kick` seconds.
-    virtual std::vector<dvec3> kicked(double kick) const = 0;
+    /// The velocities of the current state after this pass, which only kicks.
+    virtual std::vector<dvec3> kicked(const Pass& pass) const = 0;
 
-    /// Current positions and approximate normals, in the body's order, for the host.
-    virtual void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const = 0;
+    /// Current positions in the world and approximate normals, in the body's order, for the host.
+    virtual void show(const Origin& origin, std::vector<vec3>& positions,
+                      std::vector<vec3>& normals) const = 0;
     /// The same where they are, if that is on a GPU.
     virtual GpuNodes gpu_nodes() const { return {}; }
 

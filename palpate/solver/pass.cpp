@@ -43,10 +43,10 @@ ShapeFrame frame(const DistanceField&) { return {.kind = field}; }
 
 Obstacle obstacle(const Collider& collider, const Motion& motion) {
     const ShapeFrame shape = std::visit([](const auto& s) { return frame(s); }, collider.shape);
-    const vec3 origin = motion.position + motion.rotation * shape.origin;
+    const vec3 way = motion.rotation * shape.origin, origin = motion.position + way;
     const mat3 axes = motion.rotation * shape.axes;
     auto row = [&](vec3 axis) { return vec4(axis, -glm::dot(axis, origin)); };
-    const vec3 velocity = motion.velocity + glm::cross(motion.spin, origin - motion.position);
+    const vec3 velocity = motion.velocity + glm::cross(motion.spin, way);
     return {row(axes[0]),
             row(axes[1]),
             row(axes[2]),
@@ -59,9 +59,11 @@ Obstacle obstacle(const Collider& collider, const Motion& motion) {
 
 }  // namespace
 
-Pass make_pass(const Body& body, const Simulation& simulation) {
+Pass make_pass(const Body& body, const Simulation& simulation, const Origin& origin) {
     Pass pass{};
-    pass.gravity = vec4(simulation.gravity, 0);
+    // Damping brakes the origin's speed too.
+    pass.gravity = vec4(simulation.gravity - body.damping * vec3(origin.velocity), 0);
+    pass.origin_speed = vec4(vec3(origin.velocity), 0);
     pass.damping = body.damping;
     pass.link_damping = body.link_damping;
     pass.fan = body.fan;
@@ -83,14 +85,17 @@ void place_tips(std::vector<RoundTip>& tips, const Influences& influences, doubl
                         vec4(pressure_per_metre(press), 0, 0, 0)});
 }
 
-void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time) {
+void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time,
+                     const Origin& origin) {
     assert(influences.colliders.empty() || influences.colliders.size() == simulation.colliders.size());
     assert(simulation.colliders.size() <= std::size(pass.obstacle));
     pass.obstacles = int(simulation.colliders.size());
     int corners = 0, fields = 0;
     for (int i = 0; i < pass.obstacles; ++i) {
         const Collider& collider = simulation.colliders[i];
-        const Motion motion = influences.colliders.empty() ? Motion{} : influences.colliders[i];
+        Motion motion = influences.colliders.empty() ? Motion{} : influences.colliders[i];
+        motion.position = vec3(dvec3(motion.position) - origin.place);
+        motion.velocity = vec3(dvec3(motion.velocity) - origin.velocity);
         pass.obstacle[i] = obstacle(collider, after(motion, float(time)));
         ivec4& kind = pass.obstacle[i].kind;
         if (const auto* polygon = std::get_if<Polygon>(&collider.shape)) {

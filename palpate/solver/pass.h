@@ -2,6 +2,7 @@
 #include "palpate/body/body.h"
 #include "palpate/body/influences.h"
 #include "palpate/body/simulation.h"
+#include "palpate/solver/origin.h"
 
 #include <algorithm>
 #include <vector>
@@ -14,13 +15,14 @@ namespace palpate {
 
 /// A pass with all that stays the same for a body: gravity, damping, the links of its grid. Nothing
 /// touches it.
-Pass make_pass(const Body& body, const Simulation& simulation);
+Pass make_pass(const Body& body, const Simulation& simulation, const Origin& origin = {});
 
 /// The tips where they are `time` seconds into the call.
 void place_tips(std::vector<RoundTip>& tips, const Influences& influences, double time);
 
-/// Puts the obstacles where they are `time` seconds into the call.
-void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time);
+/// Puts the obstacles where they are `time` seconds into the call, as seen from where the origin is then.
+void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time,
+                     const Origin& origin);
 
 /// The corners of all polygons in a row, three a triangle, as Obstacle::kind counts them.
 std::vector<vec3> polygon_corners(const Simulation& simulation);

@@ -45,7 +45,11 @@ struct Pass {
     int   obstacles;
     int   last;        // 1 in the last pass of a step, 2 in that of a call, else 0
     float time;        // s, from the start of the call to where forces are taken
-    float padding_1, padding_2;
+    int   only_shifts;   // 1: nothing moves, but places and velocities are counted from another origin
+    float padding;
+    vec4  origin_speed;  // m/s, at which the origin of places goes on, and from which velocities are counted
+    vec4  place_shift;   // m, that places lose where a pass only shifts,
+    vec4  speed_shift;   // and m/s, that velocities do
     Obstacle obstacle[16];
     LinkNumbers spring[32];
 };

@@ -25,7 +25,8 @@ struct Turn {
     std::span<const RoundTip> tips = {};
 };
 
-/// One call of Solver::step, as every machine goes through it.
+/// One call of Solver::step, as every machine goes through it. Places and velocities are counted from its
+/// origin; guides lead to places counted from where that is at the end.
 struct Call {
     const Scheme& scheme;
     const Simulation& simulation;
@@ -36,6 +37,7 @@ struct Call {
     double step;                       // s
     int steps;
     double lag;  // s, of the velocities when it begins
+    Origin origin;
 
     /// Runs every pass of every step in turn, run(const Pass&, const Turn&): the neighbours move too. Tools
     /// and colliders stand where they are by then.
@@ -59,7 +61,7 @@ struct Call {
                 reached = last ? 1 : stage.drift;
                 pass.last = last ? (i + 1 == steps ? 2 : 1) : 0;
                 pass.duration = float(reached * step);
-                place_obstacles(pass, simulation, influences, (i + reached) * step);
+                place_obstacles(pass, simulation, influences, (i + reached) * step, origin);
                 const Where next = last && at != current ? current : at == between ? further : between;
                 run(pass, Turn{stage.from_sum ? sum : current, at, next, at == current,
                                last && i + 1 == steps, impulse, tips});

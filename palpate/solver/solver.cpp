@@ -38,6 +38,36 @@ Solver::MakeMachine machine_for(Backend backend, [[maybe_unused]] const gl::Cont
     throw Error("a backend that there is not", "the simulation", "choose one of " + all_names<Backend>());
 }
 
+// What acts on a body during a call as it is seen from the origin, with memory of its own.
+struct LocalActs {
+    Influences influences;
+    std::vector<Press> presses;
+    std::vector<NodePush> pushes;
+    std::vector<Guide> guides;
+
+    LocalActs(const Influences& world, std::span<const Guide> leads, const Origin& origin, double seconds)
+        : influences(world),
+          presses(world.presses.begin(), world.presses.end()),
+          pushes(world.pushes.begin(), world.pushes.end()),
+          guides(leads.begin(), leads.end()) {
+        auto see = [&](vec3& place, vec3& velocity) {
+            place = vec3(dvec3(place) - origin.place);
+            velocity = vec3(dvec3(velocity) - origin.velocity);
+        };
+        for (Press& press : presses) see(press.centre, press.velocity);
+        for (NodePush& push : pushes) see(push.to, push.velocity);
+        for (Guide& guide : guides) {
+            guide.velocity -= origin.velocity;
+            guide.to -= origin.after(seconds).place;
+            guide.is_led |= origin.velocity != dvec3(0);
+        }
+        influences.presses = presses;
+        influences.pushes = pushes;
+        influences.wind = vec3(dvec3(world.wind) - origin.velocity);
+    }
+    LocalActs(const LocalActs&) = delete;
+};
+
 }  // namespace
 
 int steps_within(double seconds, double longest) {
@@ -54,8 +84,12 @@ Solver::Solver(const Body& body, const Simulation& simulation, double frequency,
       scheme_(scheme(simulation.integrator)),
       frequency_(frequency),
       make_(make),
-      machine_(make_(body_, simulation_)),
-      guides_(body_) {}
+      machine_(make_(local(), simulation_)),
+      guides_(local(), origin_.place) {
+    State rest{{}, std::vector<dvec3>(body_.count(), dvec3(0))};
+    for (vec3 p : local().positions) rest.positions.push_back(origin_.place + dvec3(p));
+    put(std::move(rest));
+}
 
 Solver::~Solver() = default;
 
@@ -66,7 +100,7 @@ int Solver::steps_for(double seconds, const Influences& influences) const {
 
 void Solver::remember() {
     machine_->remember();
-    before_ = {lag_, guides_};
+    before_ = {lag_, guides_, origin_, first_node_, first_velocity_};
 }
 
 Stats Solver::step(double seconds, const Influences& influences) {
@@ -81,20 +115,33 @@ Stats Solver::go_on(double seconds, const Influences& influences) {
     return advance(seconds, steps, influences);
 }
 
+// The machine counts from where the body is now.
+void Solver::go_along() {
+    const Origin next = floating_.beside(first_node_, first_velocity_);
+    if (next == origin_) return;
+    machine_->shift(next.place - origin_.place, next.velocity - origin_.velocity);
+    origin_ = next;
+}
+
 Stats Solver::advance(double seconds, int steps, const Influences& influences) {
     Stats stats;
     stats.steps = steps;
     stats.step = seconds / steps;
-    Pass constant = make_pass(body_, simulation_);
-    constant.wind = vec4(influences.wind, simulation_.air);
+    go_along();
+    const LocalActs local(influences, guides_.lead(influences, seconds), origin_, seconds);
+    Pass constant = make_pass(body_, simulation_, origin_);
+    constant.wind = vec4(local.influences.wind, simulation_.air);
     constant.tips = int(influences.presses.size());
     constant.pushes = influences.pushes.empty() ? 0 : 1;
-    const std::vector<NodePush> pushes = by_node(influences.pushes);
-    const Call call{scheme_,    simulation_, influences, guides_.lead(influences, seconds), pushes, constant,
-                    stats.step, stats.steps, lag_};
+    const std::vector<NodePush> pushes = by_node(local.influences.pushes);
+    const Call call{scheme_,  simulation_, local.influences, local.guides, pushes,
+                    constant, stats.step,  stats.steps,      lag_,         origin_};
     Findings found = machine_->run(call);
     shown_ = false;
     lag_ = call.lag_after();
+    origin_ = origin_.after(seconds);
+    first_node_ = origin_.place + found.first_node;
+    first_velocity_ = origin_.velocity + found.first_velocity;
     guides_.arrive();
 
     stats.diverged = found.torn;
@@ -112,7 +159,10 @@ Stats Solver::advance(double seconds, int steps, const Influences& influences) {
 
 void Solver::undo() {
     if (!before_) refuse_undo(body_);
-    machine_->bring_back();
+    origin_ = before_->origin;
+    first_node_ = before_->first_node;
+    first_velocity_ = before_->first_velocity;
+    machine_->bring_back(origin_);
     lag_ = before_->lag;
     guides_ = before_->guides;
     before_.reset();
@@ -120,7 +170,7 @@ void Solver::undo() {
 }
 
 Nodes Solver::nodes() const {
-    if (!shown_) machine_->show(positions_, normals_);
+    if (!shown_) machine_->show(origin_, positions_, normals_);
     shown_ = true;
     return {positions_, normals_};
 }
@@ -129,7 +179,11 @@ GpuNodes Solver::gpu_nodes() const { return machine_->gpu_nodes(); }
 
 // Half a kick brings up velocities that lie behind.
 std::vector<dvec3> Solver::velocities_now() const {
-    return machine_->kicked(lag_ / (1 + double(body_.damping) * lag_));
+    Pass pass = make_pass(body_, simulation_, origin_);
+    pass.kick = float(lag_ / (1 + double(body_.damping) * lag_));
+    std::vector<dvec3> velocities = machine_->kicked(pass);
+    for (dvec3& v : velocities) v += origin_.velocity;
+    return velocities;
 }
 
 State Solver::state() const {
@@ -141,6 +195,8 @@ State Solver::state() const {
 
 State Solver::save() const {
     State state = machine_->get();
+    for (dvec3& p : state.positions) p += origin_.place;
+    for (dvec3& v : state.velocities) v += origin_.velocity;
     guides_.tell(state);
     state.lag = lag_;
     return state;
@@ -150,20 +206,29 @@ void Solver::restore(const State& state) {
     palpate::check(state, body_);
     before_.reset();
     guides_.stand(state);
-    machine_->put(state);
+    put(state);
     lag_ = state.lag;
     if (lag_ > 0 && !scheme_.staggered) {  // a staggered scheme's state: this one wants velocities of now
         State now = state;
         now.velocities = velocities_now();
-        machine_->put(now);
+        put(now);
         lag_ = 0;
     }
     shown_ = false;
 }
 
+void Solver::put(State state) {
+    if (!state.positions.empty()) first_node_ = state.positions[0], first_velocity_ = state.velocities[0];
+    origin_ = floating_.beside(first_node_, first_velocity_);
+    for (dvec3& p : state.positions) p -= origin_.place;
+    for (dvec3& v : state.velocities) v -= origin_.velocity;
+    machine_->put(state, origin_);
+}
+
 BodyChange Solver::change(const Edit& edit) {
     const State before = save();
     const BodyChange change = apply(body_, edit);
+    floating_.change(body_);
     frequency_ = highest_frequency(body_);
     longest_ = LongestStep(body_, simulation_, frequency_);
     State now{.positions = {}, .velocities = {}, .lag = before.lag};
@@ -171,14 +236,12 @@ BodyChange Solver::change(const Edit& edit) {
         now.positions.push_back(before.positions[std::size_t(node)]);
         now.velocities.push_back(before.velocities[std::size_t(node)]);
     }
-    guides_ = Guides(body_);
+    guides_ = Guides(local(), floating_.first().place);
     guides_.stand(now);
     before_.reset();
     shown_ = false;
-    if (change.same_nodes() && machine_->change(change.nodes)) return change;
-    std::unique_ptr<Machine> next = make_(body_, simulation_);
-    next->put(now);
-    machine_ = std::move(next);
+    if (!change.same_nodes() || !machine_->change(change.nodes)) machine_ = make_(local(), simulation_);
+    put(now);
     return change;
 }
 

@@ -5,6 +5,7 @@
 #include "palpate/body/simulation.h"
 #include "palpate/solver/guides.h"
 #include "palpate/solver/longest_step.h"
+#include "palpate/solver/origin.h"
 
 #include <functional>
 #include <memory>
@@ -84,7 +85,7 @@ class Solver final {
     State state() const;
 
     /// The state as the integrator keeps it, to the bit: going on from it after restore() is going on from
-    /// here.
+    /// here. Of a body that has gone farther than twice its size (origin.h) the last bits may differ.
     State save() const;
 
     /// Goes on from a state of the same body, from save() or state() of any integrator and machine. Throws
@@ -106,19 +107,27 @@ class Solver final {
     struct Before {
         double lag;
         Guides guides;
+        Origin origin;
+        dvec3 first_node, first_velocity;
     };
     void remember();
     Stats advance(double seconds, int steps, const Influences& influences);
+    void put(State state);
     std::vector<dvec3> velocities_now() const;
+    const Body& local() const { return floating_.local(body_); }
+    void go_along();
 
     Body body_;
     const Simulation simulation_;
     const Scheme& scheme_;
     double frequency_;  // rad/s, the highest of the body with nothing touching it
+    FloatingOrigin floating_{body_};
+    Origin origin_ = floating_.first();                        // of the machine's places and velocities
+    dvec3 first_node_ = dvec3(0), first_velocity_ = dvec3(0);  // m, m/s, in the world
     mutable LongestStep longest_{body_, simulation_, frequency_};
     const MakeMachine make_;
     std::unique_ptr<Machine> machine_;
-    Guides guides_;
+    Guides guides_;                                  // in the world
     double lag_ = 0;                                 // s, how far the velocities are behind the positions
     std::optional<Before> before_;                   // the last call, if that can be put back
     mutable std::vector<vec3> positions_, normals_;  // what nodes() shows

@@ -14,6 +14,7 @@ namespace palpate::gpu {
 struct Answers::Found {
     unsigned torn = 0, speed = 0, move = 0;
     std::array<int, 3> low, high;
+    std::array<float, 3> first_node = {}, first_velocity = {};
 };
 
 namespace {
@@ -94,6 +95,9 @@ Answer Answers::wait(const Influences& influences) {
     answer.findings.torn = found.torn > 0;
     answer.findings.largest_speed = std::bit_cast<float>(found.speed);
     answer.findings.largest_move = std::bit_cast<float>(found.move);
+    auto vector = [](const std::array<float, 3>& v) { return dvec3(v[0], v[1], v[2]); };
+    answer.findings.first_node = vector(found.first_node);
+    answer.findings.first_velocity = vector(found.first_velocity);
     if (found.low[0] <= found.high[0])
         for (int k = 0; k < 3; ++k) {
             answer.bounds.low[k] = from_order(found.low[std::size_t(k)]);

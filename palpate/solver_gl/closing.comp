@@ -9,8 +9,12 @@ layout(std430, binding = shown_normals_buffer) writeonly buffer Normals { vec4 s
 layout(std430, binding = findings_buffer) buffer Findings {
     uint diverged, speed, move;  // the two as floats' bits, which are in order where they are not negative
     int low[3], high[3];     // of the box around all, ordered()
+    float first_node[3], first_velocity[3];
 };
 uniform int count;
+uniform vec3 zero;       // m: what places are counted from, in the world,
+uniform vec3 zero_speed; // m/s: at which that went on,
+uniform float duration;  // s, of the last step
 
 // A float's bits as a whole number in the same order.
 int ordered(float a) {
@@ -27,13 +31,17 @@ void main() {
     for (int i = first; i < count; i += stride) {
         look_at(texelFetch(slots, i).x);
         vec3 position = at(positions, id).xyz, velocity = at(velocities, id).xyz;
-        shown_positions[i] = vec4(position, 1);
+        vec3 shown = zero + position;
+        shown_positions[i] = vec4(shown, 1);
         shown_normals[i] = vec4(outward(position), 0);
         if (torn(position) > 0) wrong = 1u;
-        fastest = max(fastest, length(velocity));
-        furthest = max(furthest, distance(position, at(before, id).xyz));
-        least = min(least, position);
-        most = max(most, position);
+        fastest = max(fastest, length(velocity + zero_speed));
+        furthest = max(furthest, distance(position + duration * zero_speed, at(before, id).xyz));
+        least = min(least, shown);
+        most = max(most, shown);
+        if (i > 0) continue;
+        first_node = float[3](position.x, position.y, position.z);
+        first_velocity = float[3](velocity.x, velocity.y, velocity.z);
     }
     if (wrong > 0u) atomicOr(diverged, 1u);
     atomicMax(speed, floatBitsToUint(fastest));

@@ -73,19 +73,12 @@ class Gpu final : public Machine {
                 states_[where].emplace(make_state());
         if (adds_up()) next_sum_.emplace(make_state());
         before_.emplace(make_state());
-        put({std::vector<dvec3>(body_.positions.begin(), body_.positions.end()),
-             std::vector<dvec3>(body_.count(), dvec3(0)), 0});
     }
 
     ~Gpu() override { context_.make_current_or_not(); }
 
-    // Masses lie with the places: what is in them is put where it was.
     bool change(std::span<const int> nodes) override {
-        if (!placement_.grid || body_.terms.size() != 1) return false;
-        const State now = get();
-        if (!on_gpu_.change(body_, placement_, nodes)) return false;
-        put(now);
-        return true;
+        return placement_.grid && body_.terms.size() == 1 && on_gpu_.change(body_, placement_, nodes);
     }
 
     Findings run(const Call& call) override {
@@ -108,10 +101,10 @@ class Gpu final : public Machine {
             if (tools && turn.impulse > 0) add_impulses(*tools, call, turn.impulse);
             run(pipeline, turn);
         });
-        return close(influences);
+        return close(influences, call.origin.after(call.steps * call.step), call.step);
     }
 
-    void put(const State& state) override {
+    void put(const State& state, const Origin& origin) override {
         context_.make_current();
         const gl::Visit visit;
         std::vector<vec4> positions(std::size_t(placement_.slots), vec4(0, 0, 0, -1)), velocities(positions);
@@ -127,7 +120,17 @@ class Gpu final : public Machine {
             one->velocities.put(std::as_bytes(std::span(velocities)));
         }
         on_gpu_.bind();
-        close({});
+        close({}, origin);
+    }
+
+    void shift(dvec3 place, dvec3 velocity) override {
+        context_.make_current();
+        const gl::Visit visit;
+        Pass pass = quiet_;
+        pass.only_shifts = 1;
+        pass.place_shift = vec4(vec3(place), 0);
+        pass.speed_shift = vec4(vec3(velocity), 0);
+        std::swap(*states_[current], write_beside(pass));
     }
 
     State get() const override {
@@ -148,33 +151,25 @@ class Gpu final : public Machine {
         before_->velocities.copy(states_[current]->velocities);
     }
 
-    void bring_back() override {
+    void bring_back(const Origin& origin) override {
         context_.make_current();
         const gl::Visit visit;
         states_[current]->positions.copy(before_->positions);
         states_[current]->velocities.copy(before_->velocities);
         on_gpu_.bind();
-        close({});
+        close({}, origin);
     }
 
-    std::vector<dvec3> kicked(double kick) const override {
+    std::vector<dvec3> kicked(const Pass& pass) const override {
         context_.make_current();
         const gl::Visit visit;
-        Pass pass = quiet_;
-        pass.kick = float(kick);
-        on_gpu_.bind();
-        on_gpu_.upload(pass);
-        const Moving &at = *states_[current],
-                     &free = *states_[scheme_.stages.size() == 1 ? between : further];
-        look_at(at);
-        alone_->pass({at, at, at.positions, at, free, adds_up() ? *next_sum_ : free});
-        const std::vector<vec4> by_slots = read(free.velocities);
+        const std::vector<vec4> by_slots = read(write_beside(pass).velocities);
         std::vector<dvec3> velocities;
         for (int slot : placement_.slot) velocities.emplace_back(by_slots[std::size_t(slot)]);
         return velocities;
     }
 
-    void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
+    void show(const Origin&, std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
         context_.make_current();
         std::vector<vec4> values(body_.count());
         for (auto [buffer, to] :
@@ -244,6 +239,16 @@ class Gpu final : public Machine {
         if (over || single) std::swap(*states_[current], *states_[over ? further : between]);
     }
 
+    // Runs a pass over the current state, which leaves it and writes what it returns.
+    Moving& write_beside(const Pass& pass) const {
+        on_gpu_.bind();
+        on_gpu_.upload(pass);
+        Moving &at = *states_[current], &free = *states_[scheme_.stages.size() == 1 ? between : further];
+        look_at(at);
+        alone_->pass({at, at, at.positions, at, free, adds_up() ? *next_sum_ : free});
+        return free;
+    }
+
     // The positions before the last step, which the last pass has left behind.
     const gl::Field& before_last_step() const {
         return states_[scheme_.stages.size() == 1 ? between : further]->positions;
@@ -263,12 +268,16 @@ class Gpu final : public Machine {
 
     // ---- after a call ----
 
-    Findings close(const Influences& influences) {
+    // `step`: s, the last one.
+    Findings close(const Influences& influences, const Origin& origin, double step = 0) {
         look_at(*states_[current]);
         before_last_step().bind(before_unit);
         on_gpu_.upload(quiet_);
         closing_.use();
         closing_.set("count", int(body_.count()));
+        closing_.set("zero", vec3(origin.place));
+        closing_.set("zero_speed", vec3(origin.velocity));
+        closing_.set("duration", float(step));
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, shown_positions_buffer, shown_positions_.name());
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, shown_normals_buffer, shown_normals_.name());
         answers_.bind_findings();
@@ -301,8 +310,8 @@ class Gpu final : public Machine {
     std::unique_ptr<Pipeline> alone_;  // with no tools
     gl::Program closing_;
     std::optional<Touched> touched_;
-    const Pass quiet_;                 // nothing touches or moves it
-    std::optional<Moving> states_[4];  // Where
+    const Pass quiet_;                         // nothing touches or moves it
+    mutable std::optional<Moving> states_[4];  // Where
     std::optional<Moving> next_sum_, before_;
     gl::Buffer shown_positions_, shown_normals_;  // of the nodes in their order
     int adders_;                                  // invocations that add up impulses

@@ -16,6 +16,11 @@ Node node_of(Kept kept) {
 // `was`: where the node was when the step began.
 Kept turn(Kept now, Kept start, vec3 was, inout Kept sum) {
     if (now.position.w < 0) return now;
+    if (pass.only_shifts > 0) {
+        now.position.xyz -= pass.place_shift.xyz;
+        now.velocity.xyz -= pass.speed_shift.xyz;
+        return now;
+    }
     Node node = node_of(now);
     vec3 change = vec3(0);
     if (pass.kick > 0) change = acceleration(node);

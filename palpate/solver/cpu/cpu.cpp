@@ -38,10 +38,11 @@ class Cpu final : public Machine {
         if (scheme_.stages.size() == 1 && call.steps % 2 == 1) std::swap(states_[current], states_[between]);
         for (const Guide& guide : call.guides)
             if (guide.is_led) place(std::size_t(guide.node), guide.to);
+        if (body_.count() > 0) found.first_node = place_of(0), found.first_velocity = velocity_of(0);
         return found;
     }
 
-    void put(const State& state) override {
+    void put(const State& state, const Origin&) override {
         for (std::size_t i = 0; i < body_.count(); ++i) {
             place(i, state.positions[i]);
             set_velocity(i, state.velocities[i]);
@@ -51,20 +52,26 @@ class Cpu final : public Machine {
     State get() const override {
         State state;
         for (std::size_t i = 0; i < body_.count(); ++i) {
-            const int s = laid_.layout().slot[i];
-            const Fields& f = states_[current];
-            state.positions.push_back(dvec3(body_.positions[i]) + dvec3(f.x[s], f.y[s], f.z[s]));
-            state.velocities.push_back(dvec3(f.vx[s], f.vy[s], f.vz[s]));
+            state.positions.push_back(place_of(i));
+            state.velocities.push_back(velocity_of(i));
         }
         return state;
     }
 
-    void remember() override { copy(states_[current], before_); }
-    void bring_back() override { copy(before_, states_[current]); }
+    void shift(dvec3 place, dvec3 velocity) override {
+        const Fields& f = states_[current];
+        for (int s : laid_.layout().slot) {
+            f.x[s] = float(f.x[s] - place.x), f.y[s] = float(f.y[s] - place.y),
+            f.z[s] = float(f.z[s] - place.z);
+            f.vx[s] = float(f.vx[s] - velocity.x), f.vy[s] = float(f.vy[s] - velocity.y);
+            f.vz[s] = float(f.vz[s] - velocity.z);
+        }
+    }
 
-    std::vector<dvec3> kicked(double kick) const override {
-        Pass pass = quiet_;
-        pass.kick = float(kick);
+    void remember() override { copy(states_[current], before_); }
+    void bring_back(const Origin&) override { copy(before_, states_[current]); }
+
+    std::vector<dvec3> kicked(const Pass& pass) const override {
         std::vector<Array<float>> arrays;
         Fields brought_up{};
         for_each_field([&](float* Fields::*f) {
@@ -82,8 +89,8 @@ class Cpu final : public Machine {
         return velocities;
     }
 
-    void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
-        const Fields &at = states_[current], &free = states_[between];  // between calls nobody needs it
+    void show(const Origin& origin, std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
+        const Fields& free = states_[between];  // between calls nobody needs it
         const Sweep sweep{laid_.view(), quiet_, at_now, states_, {}};
         kernels_.show(sweep, 0, all_blocks());
         kernels_.normals(sweep, 0, all_blocks(), free.x, free.y, free.z);
@@ -91,7 +98,7 @@ class Cpu final : public Machine {
         normals.resize(body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const int s = laid_.layout().slot[i];
-            positions[i] = body_.positions[i] + vec3(at.x[s], at.y[s], at.z[s]);
+            positions[i] = vec3(origin.place + place_of(i));
             normals[i] = vec3(free.x[s], free.y[s], free.z[s]);
         }
     }
@@ -250,6 +257,16 @@ class Cpu final : public Machine {
         }
     }
 
+    dvec3 place_of(std::size_t i) const {
+        const int s = laid_.layout().slot[i];
+        const Fields& f = states_[current];
+        return dvec3(body_.positions[i]) + dvec3(f.x[s], f.y[s], f.z[s]);
+    }
+    dvec3 velocity_of(std::size_t i) const {
+        const int s = laid_.layout().slot[i];
+        const Fields& f = states_[current];
+        return {f.vx[s], f.vy[s], f.vz[s]};
+    }
     void place(std::size_t i, dvec3 p) {
         const double finest = laid_.view().finest,
                      large = 4194304 * finest;  // as the kernel does at the end of a call

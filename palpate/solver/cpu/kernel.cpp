@@ -370,10 +370,12 @@ FN Pack on_a_multiple(Pack a, float finest) {
 FN void finish(const Sweep& s, const Block& block, const Fields& was, Largest& largest) {
     const Fields next = s.states[s.turn.next];
     const float finest = s.body.finest;
+    const Pack3 along(s.pass.origin_speed.x, s.pass.origin_speed.y, s.pass.origin_speed.z);
     Pack speed = 0.0f, move = 0.0f;
     for (std::ptrdiff_t i = block.first_slot; i < block.end_slot; i += std::ptrdiff_t(lanes())) {
         Pack3 p = load(next.x, next.y, next.z, i);
-        const Pack3 v = load(next.vx, next.vy, next.vz, i), way = p - load(was.x, was.y, was.z, i);
+        const Pack3 v = load(next.vx, next.vy, next.vz, i) + along,
+                    way = p - load(was.x, was.y, was.z, i) + Pack(s.pass.duration) * along;
         p = {on_a_multiple(p.x, finest), on_a_multiple(p.y, finest), on_a_multiple(p.z, finest)};
         store(p, next.x, next.y, next.z, i);
         speed = max(speed, dot(v, v));

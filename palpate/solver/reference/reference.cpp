@@ -17,11 +17,9 @@ class Reference final : public Machine {
  public:
     Reference(const Body& body, const Simulation& simulation)
         : body_(body), around_(body_, simulation), quiet_(make_pass(body, simulation)) {
-        NodeStates<Real>& begin = states_[current];
-        for (vec3 p : body.positions) begin.positions.push_back(Real3(p));
-        begin.velocities.assign(body.count(), Real3(0));
-        for (Where where : {between, further, sum})
-            if (needs(scheme(simulation.integrator), where)) states_[where] = begin;
+        for (Where where : {current, between, further, sum})
+            if (needs(scheme(simulation.integrator), where))
+                states_[where] = {std::vector<Real3>(body.count()), std::vector<Real3>(body.count())};
     }
 
     bool change(std::span<const int>) override {
@@ -46,10 +44,14 @@ class Reference final : public Machine {
         for (const Guide& guide : call.guides)
             if (guide.is_led) states_[current].positions[std::size_t(guide.node)] = Real3(guide.to);
         found.torn = torn();
+        if (body_.count() > 0) {
+            found.first_node = dvec3(states_[current].positions[0]);
+            found.first_velocity = dvec3(states_[current].velocities[0]);
+        }
         return found;
     }
 
-    void put(const State& state) override {
+    void put(const State& state, const Origin&) override {
         for (std::size_t i = 0; i < body_.count(); ++i) {
             states_[current].positions[i] = Real3(state.positions[i]);
             states_[current].velocities[i] = Real3(state.velocities[i]);
@@ -63,26 +65,31 @@ class Reference final : public Machine {
         return state;
     }
 
-    void remember() override { before_ = states_[current]; }
-    void bring_back() override { states_[current] = before_; }
+    void shift(dvec3 place, dvec3 velocity) override {
+        for (Real3& p : states_[current].positions) p = Real3(dvec3(p) - place);
+        for (Real3& v : states_[current].velocities) v = Real3(dvec3(v) - velocity);
+    }
 
-    std::vector<dvec3> kicked(double kick) const override {
+    void remember() override { before_ = states_[current]; }
+    void bring_back(const Origin&) override { states_[current] = before_; }
+
+    std::vector<dvec3> kicked(const Pass& pass) const override {
         std::vector<dvec3> velocities;
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const Node node = load(states_[current], i);
             const Real3 change =
-                node.inverse_mass > 0 ? see(i, states_[current], quiet_).acceleration(node) : Real3(0);
-            velocities.push_back(dvec3(node.velocity + Real(kick) * change));
+                node.inverse_mass > 0 ? see(i, states_[current], pass).acceleration(node) : Real3(0);
+            velocities.push_back(dvec3(node.velocity + Real(pass.kick) * change));
         }
         return velocities;
     }
 
-    void show(std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
+    void show(const Origin& origin, std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
         positions.clear();
         normals.clear();
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const Real3 p = states_[current].positions[i];
-            positions.push_back(vec3(p));
+            positions.push_back(vec3(origin.place + dvec3(p)));
             normals.push_back(vec3(see(i, states_[current], quiet_).outward(p)));
         }
     }
@@ -106,8 +113,10 @@ class Reference final : public Machine {
             const Node moved = eyes.collide(eyes.integrate(load(start, i), node, change), was);
             store(moved, next, i);
             if (!turn.ends) continue;
-            found.largest_speed = std::max(found.largest_speed, double(glm::length(moved.velocity)));
-            found.largest_move = std::max(found.largest_move, double(glm::distance(moved.position, was)));
+            const Real3 along(pass.origin_speed);
+            found.largest_speed = std::max(found.largest_speed, double(glm::length(moved.velocity + along)));
+            found.largest_move = std::max(
+                found.largest_move, double(glm::length(moved.position - was + Real(pass.duration) * along)));
         }
     }
 
