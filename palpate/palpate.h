@@ -31,6 +31,7 @@
 #include "palpate/body/material.h"
 #include "palpate/body/nodes.h"
 #include "palpate/body/patch.h"
+#include "palpate/body/scatter.h"
 #include "palpate/body/select.h"
 #include "palpate/body/simulation.h"
 #include "palpate/body/stencils.h"

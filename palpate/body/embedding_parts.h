@@ -13,19 +13,21 @@
 namespace palpate {
 
 /// mapping.inl for one vertex after the other.
-struct MappingText {
-    using Real = float;
-    using Real3 = vec3;
-    static float select(bool c, float a, float b) { return c ? a : b; }
-    static vec3 select(bool c, vec3 a, vec3 b) { return c ? a : b; }
-    static float x_of(vec3 v) { return v.x; }
-    static float abs(float a) { return std::abs(a); }
-    static float min(float a, float b) { return b < a ? b : a; }
-    static float inversesqrt(float a) { return 1 / std::sqrt(a); }
+template <class Number>
+struct MappingIn {
+    using Real = Number;
+    using Real3 = glm::vec<3, Number>;
+    static Real select(bool c, Real a, Real b) { return c ? a : b; }
+    static Real3 select(bool c, Real3 a, Real3 b) { return c ? a : b; }
+    static Real x_of(Real3 v) { return v.x; }
+    static Real abs(Real a) { return std::abs(a); }
+    static Real min(Real a, Real b) { return b < a ? b : a; }
+    static Real inversesqrt(Real a) { return 1 / std::sqrt(a); }
 #define FN static
 #include "palpate/body/mapping.inl"
 #undef FN
 };
+using MappingText = MappingIn<float>;
 
 inline vec3 direction(vec3 v, vec3 otherwise) { return MappingText::direction(v, otherwise); }
 inline vec3 any_across(vec3 n) { return MappingText::any_across(n); }
