@@ -73,7 +73,7 @@ Points::Points(const Body& body)
     glEnableVertexArrayAttrib(corners_.name(), 0);
     glVertexArrayAttribFormat(corners_.name(), 0, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(corners_.name(), 0, 0);
-    program_.set("to_clip", along(vec3(0, 0, -1), around(bounds_of(body.positions))));
+    program_.set("to_clip", light_projection(vec3(0, 0, -1), around(bounds_of(body.positions))));
 }
 
 void Points::draw(const Solver& solver) {

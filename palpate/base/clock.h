@@ -3,12 +3,12 @@
 
 namespace palpate {
 
-/// Seconds on a clock that never jumps.
+/// Seconds on a monotonic clock.
 inline double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Adds the seconds of its own life to a sum: `{ Timed timed(seconds.map); deform(...); }`
+/// Adds the seconds of its lifetime to a sum: `{ Timed timed(seconds.map); deform(...); }`
 class Timed {
  public:
     explicit Timed(double& sum) : sum_(sum), start_(now()) {}

@@ -16,4 +16,9 @@ Error::Error(std::string_view what, std::string_view where, std::string_view rem
 
 Error::Error(const std::string& line) : std::runtime_error(one_line(line)) {}
 
+Error missing_part(std::string_view part, std::string_view where, std::string_view instead) {
+    return Error("Palpate was built without its part " + std::string(part), where,
+                 std::string(instead) + ", or build with -D PALPATE_PARTS=all");
+}
+
 }  // namespace palpate

@@ -20,7 +20,7 @@ namespace {
     throw Error(std::string(what) + " (" + std::strerror(errno) + ")", path.string(), remedy);
 }
 
-// A pipe or a device, which is written to and never replaced.
+// Whether it is a pipe or a device, which is written to and never replaced.
 bool is_special(const std::filesystem::path& path) {
     std::error_code ignored;
     return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored) &&
@@ -31,17 +31,17 @@ struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-// The names of unfinished files, as a handler of signals may read them: at places that do not move. One that
-// finds no place is only removed less surely.
+// The names of unfinished files, at fixed places, so that a signal handler may read them. A file that finds
+// no free place is left behind if a signal ends the process.
 std::array<std::atomic<const char*>, 64> unfinished{};
-std::atomic<int> removing = 0;  // handlers that may read one of them just now
+std::atomic<int> removing = 0;  // how many handlers may be reading one of them
 
 void note(const char* name) {
     for (auto& place : unfinished)
         if (const char* nothing = nullptr; place.compare_exchange_strong(nothing, name)) return;
 }
 
-// When this returns, nobody reads the name any more.
+// When this returns, no handler reads the name any more.
 void forget(const char* name) {
     for (auto& place : unfinished)
         if (const char* noted = name; place.compare_exchange_strong(noted, nullptr)) break;
@@ -78,7 +78,7 @@ std::string read_text(const std::filesystem::path& path) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error))
         throw Error("a folder where a file was expected", path.string(), "name a file");
-    if (is_special(path))  // to open a pipe is to wait for whoever fills it
+    if (is_special(path))  // opening a pipe would wait for its writer
         throw Error("a pipe or a device where a file was expected", path.string(), "save it as a file first");
     std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
     if (!file) fail("cannot open", path, "check the name and that it may be read");
@@ -91,12 +91,12 @@ std::string read_text(const std::filesystem::path& path) {
 
 namespace {
 
-// True if everything written has left for the disk; a device or a pipe has none to wait for.
+// True if everything written has reached the disk; a device or a pipe has no disk to wait for.
 bool flushed(std::FILE* file) {
     return !std::ferror(file) && std::fflush(file) == 0 && (fsync(fileno(file)) == 0 || errno == EINVAL);
 }
 
-// What a name leads to: a link stays a link, and what it leads to is written.
+// The target of a link, or the name itself: a link stays a link, and its target is written.
 std::filesystem::path destination(const std::filesystem::path& name) {
     std::error_code error, ignored;
     if (!std::filesystem::is_symlink(name, ignored)) return name;
@@ -131,7 +131,7 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
 
 namespace {
 
-// Begins a file and removes it at once: only that tells whether one can be written there.
+// Creates a file and removes it at once: there is no other way to tell whether one can be written there.
 bool can_begin(const std::filesystem::path& path) {
     const Unfinished trial(path);
     return std::unique_ptr<std::FILE, Close>(std::fopen(trial.name().c_str(), "wb")) != nullptr;
@@ -149,10 +149,10 @@ void check_output(const std::filesystem::path& name, std::string_view ending) {
     const std::string has = name.extension().string();
     auto alike = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
     if (!ending.empty() && !std::ranges::equal(has, ending, alike))
-        throw Error(has.empty() ? "no ending that says what it will hold" : "cannot write \"" + has + "\"",
+        throw Error(has.empty() ? "no ending that says its format" : "cannot write \"" + has + "\"",
                     name.string(),
                     "name it " + std::filesystem::path(name).replace_extension(ending).string() +
-                        ", which is what it will be");
+                        ", which is its format");
     check_folder(path.parent_path(), path.filename().string());
     if (!can_begin(path))
         fail("cannot write", path, "check that its folder may be written to, or name another");

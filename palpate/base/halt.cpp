@@ -18,25 +18,25 @@
 namespace palpate {
 namespace {
 
-// All that end a process unless somebody handles them; without SIGTRAP, which is a debugger's.
+// All signals that end a process unless they are handled, but for SIGTRAP, which belongs to debuggers.
 constexpr int ending[] = {SIGINT, SIGTERM, SIGHUP,  SIGQUIT, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,    SIGILL,
                           SIGSYS, SIGPIPE, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ, SIGVTALRM, SIGPROF};
 constexpr int pausing[] = {SIGTSTP, SIGTTIN, SIGTTOU};
 constexpr int crashing[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS};
 constexpr std::size_t alternate_stack = 1 << 16;  // bytes, for the handler where the stack itself overflowed
 
-// A handler of signals finds its data only at places that do not move.
+// Data of the signal handler, so it is at fixed places.
 std::array<std::atomic<void (*)(Halt) noexcept>, 8> acts{};
-std::array<struct sigaction, NSIG> before{};  // what handled each signal
-std::atomic<pid_t> process = 0;               // the one whose halt this is about
-std::atomic<pid_t> acting = 0;                // the thread that calls the acts just now
+std::array<struct sigaction, NSIG> before{};  // the former handler of each signal
+std::atomic<pid_t> process = 0;               // the process that asked for this
+std::atomic<pid_t> acting = 0;                // the thread that is calling the acts
 
 pid_t this_thread() { return pid_t(syscall(SYS_gettid)); }
 
 void wait_a_moment() { poll(nullptr, 0, 1); }
 
-// By one thread at a time: others wait for it, so that none ends the process meanwhile. Not again on a thread
-// whose act crashed.
+// One thread at a time calls them: others wait, so that none ends the process meanwhile. A thread whose act
+// crashed does not call them again.
 void call_acts(Halt halt) {
     if (getpid() != process) return;
     pid_t nobody = 0;
@@ -50,7 +50,7 @@ void call_acts(Halt halt) {
     acting = 0;
 }
 
-// As if nobody had listened: it ends the process, or pauses it, and then this returns when it goes on.
+// Takes the default action: ends the process; or pauses it, and returns when it continues.
 void do_as_usual(int signal) {
     struct sigaction usual {
     }, ours{};
@@ -96,11 +96,11 @@ void listen(int signal) {
     const bool is_ignored = !(earlier.sa_flags & SA_SIGINFO) && earlier.sa_handler == SIG_IGN;
     if (is_ignored) return;
     const bool is_usual = !(earlier.sa_flags & SA_SIGINFO) && earlier.sa_handler == SIG_DFL;
-    struct sigaction ours = earlier;  // with what else the application had wished
+    struct sigaction ours = earlier;  // keeps the application's other settings
     ours.sa_sigaction = halt;
     ours.sa_flags = (earlier.sa_flags & ~int(SA_RESETHAND)) | SA_SIGINFO | SA_ONSTACK;
     if (is_usual) ours.sa_flags |= SA_RESTART;
-    // A second one waits until the first has let go of everything; only a crash cannot.
+    // A second signal waits until the first has been handled; only a crash cannot wait.
     for (int other : ending)
         if (!is_one_of(crashing, other)) sigaddset(&ours.sa_mask, other);
     for (int other : pausing) sigaddset(&ours.sa_mask, other);
@@ -134,7 +134,7 @@ void on_halt(void (*act)(Halt) noexcept) {
         void (*there)(Halt) noexcept = nullptr;
         if (place.compare_exchange_strong(there, act) || there == act) return;
     }
-    throw Error("too many acts before a halt", "this program", "put some of them into one");
+    throw Error("too many functions to call before a halt", "this program", "combine some of them");
 }
 
 }  // namespace palpate

@@ -21,10 +21,10 @@
 namespace palpate {
 namespace {
 
-// How the copy ends; any other status is a crash.
+// The exit statuses of the copy; any other is a crash.
 constexpr int done = 0, failed = 43, out_of_memory = 44;
 
-// Bytes that a complaint may have, however little output is allowed.
+// Bytes for an error message, however little output is allowed.
 constexpr std::size_t complaint = 1 << 16;
 
 [[noreturn]] void cannot(const std::string& what, const std::string& file) {
@@ -48,7 +48,7 @@ void limit(int resource, rlim_t value) {
     setrlimit(__rlimit_resource_t(resource), &both);
 }
 
-// The address sanitizer maps terabytes for itself, so no bound on memory means anything beside it.
+// The address sanitizer maps terabytes for itself, so a limit on memory would be meaningless.
 void limit_memory([[maybe_unused]] std::size_t bytes) {
 #ifndef __SANITIZE_ADDRESS__
     long pages = 0;
@@ -66,7 +66,7 @@ void keep_quiet() {
     dup2(nowhere, STDERR_FILENO);
 }
 
-// The copy's whole life.
+// All that the copy does.
 [[noreturn]] void live(int output, const Allowance& allowance, const std::function<void(std::FILE*)>& work) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXFSZ})
@@ -83,15 +83,15 @@ void keep_quiet() {
         status = std::fflush(stream) == 0 ? done : out_of_memory;
     } catch (const std::bad_alloc&) {
         status = out_of_memory;
-    } catch (const std::exception& error) {  // what it wrote until then gives way to the complaint
+    } catch (const std::exception& error) {  // the error message replaces what it wrote until then
         std::fflush(stream);
         if (ftruncate(output, 0) == 0 && lseek(output, 0, SEEK_SET) == 0) std::fputs(error.what(), stream);
         std::fflush(stream);
     }
-    _exit(status);  // nothing of this process is to be ended twice
+    _exit(status);  // so that destructors and exit handlers run in the parent only
 }
 
-// Seconds of the processor's time that another process has had.
+// The processor time that another process has used, s.
 double seconds_of(pid_t process) {
     clockid_t clock;
     timespec time{};
@@ -99,13 +99,13 @@ double seconds_of(pid_t process) {
     return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
-// Why the copy was not waited for any longer.
+// Why waiting for the copy was given up.
 enum class Late { no, busy, idle };
 
-// Waits until the copy has closed its end of the pipe, which it does by ending. What counts is what it did: a
-// wait during which this process slept as well, or the machine had others to serve, is no fault of the file.
+// Waits until the copy closes its end of the pipe by ending. Only its own processor time counts: the file is
+// not to blame if this process was paused as well, or if the machine was busy.
 Late wait_for(pid_t copy, int watched, const Allowance& allowance) {
-    constexpr double look = 0.02;  // s, from one look at it to the next
+    constexpr double look = 0.02;  // s, between two looks at it
     double idle = 0, before = 0;
     for (;;) {
         pollfd waiting{watched, 0, 0};
@@ -153,14 +153,13 @@ Written isolated(const std::string& library, const std::string& file, const Allo
 
     const std::string remedy = "convert it with another program";
     if (late == Late::busy)
-        throw Error(fmt::format("{} is not done after {:.3g} s with what is", library, allowance.seconds),
-                    file, remedy);
+        throw Error(fmt::format("{} took more than {:.3g} s for what is", library, allowance.seconds), file,
+                    remedy);
     if (late == Late::idle)
-        throw Error(fmt::format("{} has stood still for {:.3g} s over what is", library, allowance.idle),
-                    file, remedy);
+        throw Error(fmt::format("{} hung for {:.3g} s on what is", library, allowance.idle), file, remedy);
     const int how = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     if (how == out_of_memory)
-        throw Error(fmt::format("{} wants more than {} MB for what is", library, allowance.bytes >> 20), file,
+        throw Error(fmt::format("{} needs more than {} MB for what is", library, allowance.bytes >> 20), file,
                     remedy);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ)
         throw Error(fmt::format("{} makes more than {} MB of what is", library, allowance.output >> 20), file,

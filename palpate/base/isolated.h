@@ -7,16 +7,16 @@
 
 namespace palpate {
 
-/// What a piece of work in a process of its own may use.
+/// The limits on work in a process of its own.
 struct Allowance {
     double seconds = 20;                       // of the processor's time, however busy the machine is
     std::size_t bytes = std::size_t(1) << 30;  // of memory, beyond what this process has already
     std::size_t output = std::size_t(1)
-                         << 30;  // bytes that it writes to its stream, which also lie in memory
-    double idle = 30;            // s in a row in which it gets nothing done: it waits for what never comes
+                         << 30;  // bytes that it writes to its stream, which are in memory, too
+    double idle = 30;            // s without progress, in a row: it hangs
 };
 
-/// What isolated work wrote; unmapped again with the last of it.
+/// What isolated work wrote. It unmaps the memory at its end.
 class Written {
  public:
     Written(const char* bytes, std::size_t count) : bytes_(bytes), count_(count) {}
@@ -31,12 +31,12 @@ class Written {
     std::size_t count_;
 };
 
-/// Runs `work` in a process of its own, a copy of this one, and returns what it wrote to its stream. For
-/// libraries that believe what a file claims: if one of them crashes, hangs or asks for memory without end,
-/// only the copy ends. Then Error is thrown, "LIBRARY crashed on what is in FILE; ...", as is an Error that
-/// `work` throws. The copy prints nothing, and dies with this process. `library` and `file` are for messages.
-/// Other threads may go on, and may allocate; but the copy has none of them, so for a lock of their own that
-/// one holds just then it would wait until that is noticed.
+/// Runs `work` in a process of its own, a fork of this one (a sandbox), and returns what it wrote to its
+/// stream. For libraries that trust what a file claims: if one of them crashes, hangs or allocates without
+/// end, only the copy ends. Then this throws an Error, "LIBRARY crashed on what is in FILE; ...". It also
+/// throws any Error that `work` throws. The copy prints nothing, and dies with this process. `library` and
+/// `file` are for messages. Other threads may continue and may allocate. But the copy has none of them: if
+/// one of them holds another lock at the fork, `work` waits for it until that is noticed as a hang.
 Written isolated(const std::string& library, const std::string& file, const Allowance& allowance,
                  const std::function<void(std::FILE*)>& work);
 

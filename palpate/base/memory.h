@@ -3,8 +3,8 @@
 
 namespace palpate {
 
-/// The most memory, in bytes, that this process has had at once so far, and as much again as the largest of
-/// the processes that it started and that have ended.
+/// The peak memory of this process so far, in bytes, plus that of the largest of its child processes that
+/// have ended.
 std::size_t peak_memory();
 
 }  // namespace palpate

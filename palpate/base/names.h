@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// An enumeration's value and what people call it in scenes and on the command line. Each enumeration E has
+/// A value of an enumeration, with its name in scenes and on the command line. Each enumeration E has
 /// `std::span<const Named<E>> names(E)`, found by argument-dependent lookup; its argument only picks the
 /// overload.
 template <class E>
@@ -40,7 +40,8 @@ std::string all_names() {
     return list;
 }
 
-/// How many letters must be changed, added or taken away to turn one word into the other.
+/// The edit distance (Levenshtein): how many letters must be changed, added or removed to turn one word into
+/// the other.
 inline int edits(std::string_view a, std::string_view b) {
     std::vector<int> row(b.size() + 1);
     std::iota(row.begin(), row.end(), 0);
@@ -55,7 +56,7 @@ inline int edits(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-/// The name that a word was perhaps meant to be.
+/// The name that is most like a word: what was perhaps meant.
 template <class E>
 std::string_view nearest_name(std::string_view word) {
     const auto all = names(E{});

@@ -7,10 +7,11 @@
 
 namespace palpate {
 
-/// The one of these words that another was perhaps meant to be; empty if none is as near as two letters.
+/// The one of these words that is most like another, by edit distance: what was perhaps meant. Empty if all
+/// differ by more than two letters.
 inline std::string nearest(std::string_view word, std::span<const std::string> all) {
     std::string best;
-    int changes = int(std::min<std::size_t>(word.size(), 3));  // so many make another word
+    int changes = int(std::min<std::size_t>(word.size(), 3));  // with so many it is another word
     for (const std::string& one : all)
         if (const int some = edits(one, word); some < changes) {
             best = one;

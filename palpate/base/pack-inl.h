@@ -1,10 +1,10 @@
-// Pack: as many floats as a SIMD register holds, and Pack3, three of them, with GLSL's words. For code that
-// is compiled once for each instruction set by Highway's foreach_target: included inside HWY_NAMESPACE, once
-// for each (so it has no include guard), after FN is defined.
+// Pack: as many floats as a SIMD register holds; Pack3: a vector of three of them. Their operations have
+// GLSL's names. For code that Highway's foreach_target compiles once for each instruction set: include this
+// inside HWY_NAMESPACE, after FN is defined, each time (so it has no include guard).
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::ScalableTag<float>;
-using Word = hn::Vec<hn::RebindToUnsigned<Lanes>>;  // as many bits of integers
+using Word = hn::Vec<hn::RebindToUnsigned<Lanes>>;  // as many unsigned integers
 using Mask = hn::Mask<Lanes>;
 
 struct Pack {
@@ -35,10 +35,10 @@ FN size_t lanes() { return hn::Lanes(Lanes()); }
 FN Pack load(const float* from) { return hn::LoadU(Lanes(), from); }
 FN void store(Pack a, float* to) { hn::StoreU(a.v, Lanes(), to); }
 
-// An estimate of 1/√a, good to at least eleven bits: what the processor has for it.
+// The processor's own estimate of 1/√a, exact to at least eleven bits.
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_SSE4
 FN Pack estimate(Pack a) { return hn::ApproximateReciprocalSqrt(a.v); }
-#elif HWY_TARGET == HWY_NEON  // eight bits only: one step of Newton's more
+#elif HWY_TARGET == HWY_NEON  // only eight bits: one more step of Newton's method
 FN Pack estimate(Pack a) {
     const Pack e = hn::ApproximateReciprocalSqrt(a.v);
     return e * (1.5f - (0.5f * a) * (e * e));
@@ -47,7 +47,7 @@ FN Pack estimate(Pack a) {
 FN Pack estimate(Pack a) { return Pack(1.0f) / Pack(hn::Sqrt(a.v)); }
 #endif
 
-// One step of Newton's from there: right to two units in the last place.
+// One step of Newton's method from there: exact to two units in the last place.
 FN Pack inversesqrt(Pack a) {
     const Pack e = estimate(a);
     return e * (1.5f - (0.5f * a) * (e * e));
@@ -83,7 +83,8 @@ FN void store(Pack3 a, float* x, float* y, float* z, std::ptrdiff_t i) {
     store(a.z, z + i);
 }
 
-// The first three of the four floats at each lane's own place, which at(lane) says, turned into three packs.
+// A transposing gather: loads four floats at the address at(lane) for each lane, and returns the first three
+// as three packs.
 template <class At>
 FN Pack3 load_each(At at) {
 #if HWY_TARGET == HWY_SCALAR
@@ -116,7 +117,7 @@ FN Pack3 load_each(At at) {
 #endif
 }
 
-// The other way: four floats for each lane, the last of them 0, one after the other.
+// The inverse: stores four floats for each lane, the last of them 0, one lane after the other.
 FN void store_each(Pack3 a, float* to) {
 #if HWY_TARGET == HWY_SCALAR
     store(a, to, to + 1, to + 2, 0);
@@ -126,7 +127,7 @@ FN void store_each(Pack3 a, float* to) {
 #endif
 }
 
-// One vector after the other, x, y, z.
+// Stores x, y, z of one lane after the other.
 FN void store_interleaved(Pack3 a, float* to) {
 #if HWY_TARGET == HWY_SCALAR
     store(a, to, to + 1, to + 2, 0);

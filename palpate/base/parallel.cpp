@@ -23,7 +23,7 @@ struct Processors::Free {
 
 namespace {
 
-// What a thread shares with those that it started, and with the one that started it.
+// The count that a thread shares with those that it started, and with the one that started it.
 thread_local Processors::Free* shared = nullptr;
 
 class Sharing {
@@ -38,12 +38,12 @@ class Sharing {
                 if (!start(helpers)) break;
             do_piece(i);
         }
-        helpers.clear();  // when they are done
+        helpers.clear();  // joins them
         if (error_) std::rethrow_exception(error_);
     }
 
  private:
-    // A system that has no thread to give leaves more to those there are.
+    // If the system starts no more threads, the others do the work.
     bool start(std::vector<std::jthread>& helpers) {
         try {
             helpers.emplace_back([this, free = shared] {
@@ -64,7 +64,7 @@ class Sharing {
         } catch (...) {
             const std::lock_guard lock(mutex_);
             if (i < failed_) failed_ = i, error_ = std::current_exception();
-            next_ = count_;  // all before i are begun, so of those that fail the first is always found
+            next_ = count_;  // all before i have begun, so the failure with the lowest i is always found
         }
     }
 

@@ -6,14 +6,15 @@
 
 namespace palpate {
 
-/// Calls piece(i) once for each i below `count`, on as many processors as there are; returns when all are
-/// done. What an i writes should depend on it alone: then it does not depend on who took it. A piece may call
-/// this again: no more threads work than there are processors, and whoever has pieces left takes those that
-/// come free. If pieces throw, those not yet begun are left out, and what the first of them threw is thrown.
+/// Calls piece(i) once for each i below `count`, on all processors; returns when all calls are done. What
+/// piece(i) writes should depend on i alone: then the result is the same on any number of threads. A piece
+/// may call this again: there are never more working threads than processors, and a call with pieces left
+/// takes threads that become free. If pieces throw, those not yet begun are skipped, and the exception of the
+/// lowest i is thrown.
 void in_parallel(std::size_t count, const std::function<void(std::size_t)>& piece);
 
-/// Calls work(i) once for each i below `count`, in pieces of `at_once`: as many as take some 100 µs, more
-/// than it takes to start a thread. The rest is as in_parallel() has it.
+/// Calls work(i) once for each i below `count`, in pieces of `at_once`. A piece should take some 100 µs,
+/// longer than it takes to start a thread. Otherwise it is like in_parallel().
 template <class Work>
 void parallel_for(std::size_t count, std::size_t at_once, const Work& work) {
     in_parallel((count + at_once - 1) / at_once, [&](std::size_t piece) {
@@ -22,14 +23,14 @@ void parallel_for(std::size_t count, std::size_t at_once, const Work& work) {
     });
 }
 
-/// Calls each of these once.
+/// Calls each of these functions once, in parallel.
 template <class... Works>
 void parallel_invoke(const Works&... works) {
     const std::function<void()> all[] = {std::cref(works)...};
     in_parallel(sizeof...(works), [&](std::size_t i) { all[i](); });
 }
 
-/// While it lives, what this thread does in parallel is done by at most so many threads, itself among them.
+/// Limits, during its lifetime, how many threads do this thread's parallel work, this thread included.
 class Processors {
  public:
     explicit Processors(int most);

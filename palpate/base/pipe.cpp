@@ -56,7 +56,7 @@ Pipe::~Pipe() {
 }
 
 void Pipe::write(const void* bytes, std::size_t count) {
-    // A program that ends early must not kill us: while writing, its signal is held back and then discarded.
+    // A program that ends early must not kill this one: SIGPIPE is blocked while writing, and then discarded.
     sigset_t broken, before;
     sigemptyset(&broken);
     sigaddset(&broken, SIGPIPE);

@@ -9,8 +9,8 @@ namespace palpate {
 /// True if a program of this name is on the PATH.
 bool has_program(const std::string& name);
 
-/// The standard input of another program that runs beside ours. Its output goes nowhere; the last line of its
-/// complaints goes into the Error when it fails.
+/// A pipe into the standard input of another program, which runs beside ours. Its output is discarded; if it
+/// fails, the Error quotes the last line of its standard error.
 class Pipe {
  public:
     /// Starts `words[0]` with the other words as its arguments; no shell is involved. Throws Error.
@@ -19,7 +19,7 @@ class Pipe {
     Pipe(const Pipe&) = delete;
     Pipe& operator=(const Pipe&) = delete;
 
-    /// Throws Error if the program no longer listens.
+    /// Throws Error if the program has stopped reading.
     void write(const void* bytes, std::size_t count);
 
     /// Closes the pipe and waits for the program to end. Throws Error if it failed.

@@ -7,12 +7,12 @@ namespace palpate {
 
 using glm::dquat;
 
-/// Where a thing is that was at the origin, and how it is turned there.
+/// A rigid motion: the position and orientation of a thing that was at the origin.
 struct Pose {
     dvec3 place = dvec3(0);          // m
-    dquat turn = dquat(1, 0, 0, 0);  // of unit length
+    dquat turn = dquat(1, 0, 0, 0);  // a unit quaternion
 
-    /// Where a point p of the thing is.
+    /// The place of the thing's point p.
     dvec3 of(dvec3 p) const { return place + turn * p; }
 
     bool operator==(const Pose&) const = default;

@@ -18,7 +18,7 @@
 namespace palpate {
 namespace {
 
-// Below the kernel's own threads of the highest priorities, above everything that people start.
+// Below the kernel's own most urgent threads, above ordinary programs.
 constexpr int wanted_priority = 80;
 constexpr int wanted_niceness = -20;
 
@@ -27,7 +27,7 @@ bool become_fifo(int priority) {
     return priority > 0 && pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) == 0;
 }
 
-// What an unprivileged process may be granted all the same.
+// What an unprivileged process may get, too.
 int allowed(decltype(RLIMIT_RTPRIO) which) {
     rlimit limit{};
     if (getrlimit(which, &limit) != 0) return 0;

@@ -3,26 +3,26 @@
 
 namespace palpate {
 
-/// What the system has granted to a thread that has to keep time.
+/// What the system has granted to a real-time thread.
 struct Granted {
     std::string schedule;        // "FIFO 80", "nice -11", "as any other thread"
-    bool memory_locked = false;  // none of the process's memory is ever taken away to a disk
-    bool wakes_exactly = false;  // timers are not put off to save power
+    bool memory_locked = false;  // no memory of the process is swapped out
+    bool wakes_exactly = false;  // timers have no slack
 };
 
-/// Asks that the calling thread run before others, and if `first` even before those that asked for that: as a
-/// real-time thread of the highest priority that is allowed; else with as much of niceness as is; else it
-/// stays as it is. Memory is locked only where no limit is set on that, because with one a later allocation
-/// would fail.
+/// Raises the priority of the calling thread: real-time scheduling (SCHED_FIFO) at the highest priority that
+/// is allowed, else the lowest niceness that is allowed, else nothing. If `first`, it comes before other
+/// threads that called this. Memory is locked only if there is no limit on that, because with a limit a later
+/// allocation would fail.
 Granted keep_time(bool first = false);
 
-/// The kernel's name, version and kind of preemption, in a line.
+/// The kernel's name, version and preemption model, in one line.
 std::string kernel();
 
-/// Seconds of the processor's time that the calling thread has had.
+/// The processor time that the calling thread has used, s.
 double thread_seconds();
 
-/// Sleeps until `now()` is at least that.
+/// Sleeps until now() is at least `time`.
 void sleep_until(double time);
 
 }  // namespace palpate

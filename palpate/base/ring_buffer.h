@@ -5,12 +5,12 @@
 
 namespace palpate {
 
-/// Passes values from one thread to another, all of them and in their order. Neither ever waits: a full ring
-/// takes no more, and an empty one gives none.
+/// A ring buffer: a lock-free, wait-free queue from one writer to one reader, which loses nothing and keeps
+/// the order. A full ring takes no more, and an empty one gives none.
 template <class T, std::size_t size>
 class RingBuffer {
  public:
-    /// The writer's. False if it is full.
+    /// For the writer. False if it is full.
     bool put(const T& value) noexcept {
         const std::size_t put = put_.load(std::memory_order_relaxed);
         if (put - taken_.load(std::memory_order_acquire) == size) return false;
@@ -19,7 +19,7 @@ class RingBuffer {
         return true;
     }
 
-    /// The reader's. False, and `value` as it was, if it is empty.
+    /// For the reader. If it is empty: false, and `value` stays as it was.
     bool take(T& value) noexcept {
         const std::size_t taken = taken_.load(std::memory_order_relaxed);
         if (taken == put_.load(std::memory_order_acquire)) return false;
@@ -29,7 +29,7 @@ class RingBuffer {
     }
 
  private:
-    static_assert((size & (size - 1)) == 0, "a power of two, so that the counts may overflow");
+    static_assert((size & (size - 1)) == 0, "a power of two, so that the counters may overflow");
 
     std::array<T, size> places_ = {};
     std::atomic<std::size_t> put_ = 0, taken_ = 0;

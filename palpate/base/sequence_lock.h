@@ -8,9 +8,10 @@
 
 namespace palpate {
 
-/// A plain struct that one thread writes and any others read, whole. The writer never waits: what a reader
-/// read while it was at it, the reader drops. Its words are atomic and ordered one by one,
-/// without fences, so that this is exact in C++'s terms and not only on processors that happen to do it.
+/// A sequence lock (seqlock): a plain struct that one thread writes and others read. The writer never waits;
+/// a reader discards what it read during a write. The struct is copied as atomic words, each with its own
+/// memory order and without fences, so that this is free of data races by the rules of C++, not only on
+/// common processors.
 template <class T>
 class SequenceLock {
     static_assert(std::is_trivially_copyable_v<T>, "what is shared is copied word by word");
@@ -18,19 +19,19 @@ class SequenceLock {
  public:
     explicit SequenceLock(const T& value = T()) noexcept { store(value); }
 
-    /// By the one writer only.
+    /// For the one writer.
     void store(const T& value) noexcept {
         std::array<std::uint64_t, words> copy{};
         std::memcpy(copy.data(), &value, sizeof value);
         const unsigned turn = turn_.load(std::memory_order_relaxed);
         turn_.store(turn + 1, std::memory_order_relaxed);  // odd: being written
-        // Whoever sees a word of this writing also sees that it had begun.
+        // A reader that sees one of these words also sees that the write had begun.
         for (std::size_t i = 0; i < words; ++i) words_[i].store(copy[i], std::memory_order_release);
         turn_.store(turn + 2, std::memory_order_release);
     }
 
-    /// False, and `value` as it was, if the writer was at it. For a reader that may not wait, since the
-    /// writer may be asleep in the middle of a word.
+    /// If a write was under way: false, and `value` stays as it was. For a reader that must not wait, since
+    /// the writer may be suspended in the middle of a write.
     bool try_load(T& value) const noexcept {
         std::array<std::uint64_t, words> copy;
         const unsigned before = turn_.load(std::memory_order_acquire);
@@ -40,7 +41,7 @@ class SequenceLock {
         return true;
     }
 
-    /// Waits until it has been read whole.
+    /// Retries until it has read a whole value.
     T load() const noexcept {
         T value;
         while (!try_load(value)) continue;

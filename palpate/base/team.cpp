@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-// Tells the processor that this thread only waits.
+// Tells the processor that this thread spins.
 void pause() {
 #if defined(__x86_64__)
     __builtin_ia32_pause();
@@ -14,8 +14,8 @@ void pause() {
 #endif
 }
 
-// Until a counter leaves a value. Whoever waits for another member's work gets it within microseconds;
-// between calls it may be long.
+// Waits until a counter changes from a value. Within run() that takes microseconds; between calls it may take
+// long.
 void wait_while(const std::atomic<unsigned>& counter, unsigned value) {
     constexpr int spins = 4000;  // some 50 to 100 µs
     for (int i = 0; i < spins; ++i) {

@@ -6,8 +6,8 @@
 
 namespace palpate {
 
-/// Threads that work on one thing together, again and again, and meet in between: what takes a few
-/// microseconds of each. Waiting members spin for a moment, then sleep.
+/// A thread pool for short parallel work, of a few microseconds, that is repeated often, with barriers in
+/// between. Waiting members spin for a moment, then sleep.
 class Team {
  public:
     /// `members`: at least one. The caller of run() is member 0; the others have threads of their own.
@@ -18,18 +18,19 @@ class Team {
 
     int members() const { return int(threads_.size()) + 1; }
 
-    /// Calls work(member) once for each member, all at the same time; returns when all have. It does not
-    /// throw.
+    /// Calls work(member) once for each member, all at the same time; returns when all calls have returned.
+    /// `work` must not throw.
     void run(const std::function<void(int)>& work);
 
-    /// In run(): waits until all members are here. What each wrote before, all see after.
+    /// A barrier, to be called in run(): waits until all members have reached it. What each wrote before it,
+    /// all see after it.
     void meet();
 
  private:
     void stand_by(int member);
 
     std::vector<std::thread> threads_;
-    const std::function<void(int)>* work_ = nullptr;  // null: go home
+    const std::function<void(int)>* work_ = nullptr;  // null: the threads end
     std::atomic<unsigned> calls_ = 0;                 // of run()
     std::atomic<unsigned> arrived_ = 0, meetings_ = 0;
 };

@@ -3,17 +3,17 @@
 
 namespace palpate {
 
-/// Passes values from one thread to another, of which the reader wants the newest. Neither ever waits,
-/// whatever the other does: there are three places, one that is written, one that is read, and the newest
-/// between.
+/// A triple buffer: passes the newest value from one writer to one reader, neither of which ever waits. Of
+/// its three places one is written, one is read, and one holds the newest value in between.
 template <class T>
 class TripleBuffer {
  public:
-    /// The writer's own place, with what it held two or three values ago; fill it, then publish() it.
+    /// For the writer: its own place, which still holds the value of two or three writes ago; fill it, then
+    /// publish() it.
     T& draft() { return places_[draft_]; }
     void publish() { draft_ = middle_.exchange(draft_ | fresh, std::memory_order_acq_rel) & place; }
 
-    /// The reader's: takes the newest, if there is one that it has not had; then shown() is that.
+    /// For the reader: takes the newest value into shown(). False if there is none since the last call.
     bool fetch() {
         if (!(middle_.load(std::memory_order_relaxed) & fresh)) return false;
         shown_ = middle_.exchange(shown_, std::memory_order_acq_rel) & place;

@@ -1,5 +1,5 @@
 #pragma once
-// Vectors and matrices with GLSL's words, from glm.
+// Vectors and matrices with GLSL's names, from glm.
 #include <glm/glm.hpp>
 
 #include <limits>
@@ -23,7 +23,7 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
-/// A box along the axes. A new one is empty: `low` above `high`.
+/// An axis-aligned bounding box (AABB). A new one is empty: `low` is above `high`.
 struct Bounds {
     vec3 low = vec3(std::numeric_limits<float>::max());
     vec3 high = vec3(std::numeric_limits<float>::lowest());
@@ -37,7 +37,7 @@ struct Bounds {
     }
 };
 
-/// Around points.
+/// The bounding box of points.
 inline Bounds bounds(std::span<const vec3> points) {
     Bounds box;
     for (vec3 p : points) box.include(p);

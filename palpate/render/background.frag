@@ -1,5 +1,5 @@
 #version 450 core
-// A calm backdrop, brightest behind the things.
+// The background: a gradient that is brightest in the middle.
 
 uniform vec2 picture;  // pixels
 

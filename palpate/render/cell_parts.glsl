@@ -1,5 +1,5 @@
-// A part of a cluster, as CellPart in culling.cpp: its vertices in one cell, and between which places in that they
-// are. As the map is trilinear, what those places enclose encloses the vertices too.
+// A part of a cluster, as CellPart in culling.cpp: its vertices in one cell, and the box of their places in that
+// cell. As the map is trilinear, the hull of the box's mapped corners contains the vertices.
 
 struct Part {
     int nodes[8];
@@ -12,7 +12,7 @@ vec3 low(int i) { return vec3(parts[i].low[0], parts[i].low[1], parts[i].low[2])
 vec3 high(int i) { return vec3(parts[i].high[0], parts[i].high[1], parts[i].high[2]); }
 vec3 origin(int i) { return vec3(parts[i].origin[0], parts[i].origin[1], parts[i].origin[2]); }
 
-// The eight corners of a part at rest, in cells, and now.
+// The eight corners of a part's box: at rest, in cells; and now.
 vec3 at_rest(int i, int k) { return origin(i) + mix(low(i), high(i), vec3(k & 1, k >> 1 & 1, k >> 2 & 1)); }
 void corners(int i, out vec3 now[8]) {
     for (int k = 0; k < 8; ++k) now[k] = node_position(parts[i].nodes[k]);
@@ -39,12 +39,12 @@ mat3 gradient(int i) {
     return mat3(f.x, f.y, f.z);
 }
 
-// Whether all triangles of a cluster show their backs, for all that the deformation may have done to them. It moves
-// a vertex by one gradient for all, and by a rest. What two rests differ by at most, two ends of a triangle's side
-// do too; and so far the triangle may look another way than that gradient turned it.
+// Whether all triangles of a cluster are back faces, however it is deformed. The deformation is one gradient for the
+// whole cluster, plus a remainder for each vertex. The remainders of two vertices differ at most by the size of their
+// box, which bounds by how much the normal of a triangle may differ from the one that the gradient alone gives.
 bool faces_away(Cluster c, int first, int end, Box box) {
     if (!(c.sharpness > 0)) return false;
-    mat3 mean = gradient((first + end) / 2);  // any would do, but one that is about the mean does best
+    mat3 mean = gradient((first + end) / 2);  // any would do, but one near the mean gives the tightest bound
     Box rests = no_box();
     for (int i = first; i < end; ++i) {
         vec3 now[8];
@@ -56,7 +56,7 @@ bool faces_away(Cluster c, int first, int end, Box box) {
     float stretch = sqrt(dot(mean[0], mean[0]) + dot(mean[1], mean[1]) + dot(mean[2], mean[2]));
     float most = sqrt(dot(cofactors[0], cofactors[0]) + dot(cofactors[1], cofactors[1]) +
                       dot(cofactors[2], cofactors[2]));
-    // Where a triangle is seen edge-on, rounding to pixels may turn it: that margin is the last term.
+    // Rounding to pixels may flip a triangle that is seen edge-on: the last term is the margin for that.
     float off = rest * (stretch * c.sharpness + rest * c.smallness) + 0.05 * most;
 
     // From the eye to the middle of the cluster, and how far any of it is from there.

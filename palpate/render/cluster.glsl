@@ -1,11 +1,12 @@
-// What all kinds of clusters have.
+// What clusters of all kinds share.
 
 // As Cluster in culling.cpp.
 struct Cluster {
-    // Where its parts end, and the corners of its triangles; they begin where the last cluster's end.
+    // The index after its last part, and after the last corner of its triangles; they begin where those of the
+    // cluster before end.
     int parts_end, corners_end;
-    // The cone of its triangles' normals at rest, and of each triangle the two shorter sides and 1 over its area,
-    // twice: the largest. In cells; 0 where there is no such cone.
+    // The cone of its triangles' normals at rest; the largest, over its triangles, of the sum of the two shorter
+    // sides over twice the area, and of 1 over twice the area. In cells; 0 where there is no such cone.
     float axis[3], cosine, sine;
     float sharpness, smallness;
 };
@@ -13,7 +14,7 @@ struct Cluster {
 uniform mat4 to_clip;
 uniform vec4 eye;  // see View
 
-struct Box {
+struct Box {  // axis-aligned bounding box
     vec3 low, high;
 };
 

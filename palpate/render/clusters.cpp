@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-constexpr float facing = 0.5f;  // how much it counts that triangles look the same way, 0 to 1
+constexpr float facing = 0.5f;  // how much it counts that triangles face the same way, 0 to 1
 
 }  // namespace
 

@@ -29,9 +29,10 @@ const char* triangle_parts_glsl =
     ;
 
 constexpr GLuint cull_group = 64;  // as in cull.comp
-constexpr float widest = 0.1f;     // the cosine of half the widest cone of normals that is made use of
+constexpr float widest = 0.1f;     // the cosine of half the opening angle of the widest cone of normals that
+                                   // is used
 
-// As shaders read them: see the GLSL for what they mean.
+// In the layout that the shaders read; the GLSL says what they mean.
 struct Cluster {
     int parts_end = 0, corners_end = 0;
     vec3 axis = vec3(0);
@@ -73,7 +74,7 @@ std::span<const uvec3> triangles_of(const Clusters& clusters, std::size_t c) {
     return std::span(clusters.triangles).subspan(begin, clusters.ends[c] - begin);
 }
 
-// The members of a cluster by what they hang on.
+// The members of a cluster, grouped by the nodes that they follow.
 template <class Hangs>
 auto by_nodes(const Members& members, Hangs hangs) {
     std::map<decltype(hangs(0u)), Members> groups;
@@ -81,7 +82,8 @@ auto by_nodes(const Members& members, Hangs hangs) {
     return groups;
 }
 
-// The cone of the triangles' normals, of vertices at these places. Left empty if they look too many ways.
+// The cone that holds the normals of the triangles, for vertices at these places. It is left empty if the
+// normals spread too far.
 void make_cone(std::span<const uvec3> triangles, const std::map<unsigned, vec3>& places, Cluster& cluster) {
     std::vector<vec3> normals;
     vec3 sum(0);
@@ -108,7 +110,7 @@ void make_cone(std::span<const uvec3> triangles, const std::map<unsigned, vec3>&
     cluster.smallness = smallness;
 }
 
-// Clusters and their parts, in the making.
+// Clusters and their parts, as they are built.
 template <class Part>
 struct Made {
     std::vector<Cluster> clusters;
@@ -139,7 +141,7 @@ Made<CellPart> make(const Clusters& clusters, const Mesh& mesh, const Embedding&
     return made;
 }
 
-// Of the second and third weight; the first is what they leave.
+// The range of the second and third barycentric weight; the first is 1 minus both.
 void include(const vec3& weights, vec2& low, vec2& high) {
     low = min(low, vec2(weights.y, weights.z));
     high = max(high, vec2(weights.y, weights.z));
@@ -209,14 +211,14 @@ Culling::Culling(const Clusters& clusters, const Mesh& mesh, const Embedding& em
     commands_ = gl::Buffer::room(sizes_.size() * sizeof(Command));
 }
 
-void Culling::find(const View& view, bool hides_backs, bool in_textures, float moved) const {
+void Culling::find(const View& view, bool culls_back_faces, bool in_textures, float moved) const {
     const gl::Program& program = in_textures ? from_textures_ : from_buffers_;
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, parts_.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, clusters_.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, commands_.name());
     program.set("to_clip", view.to_clip);
     program.set("eye", view.eye);
-    program.set("hides_backs", hides_backs);
+    program.set("culls_back_faces", culls_back_faces);
     program.set("moved", moved);
     program.use();
     glDispatchCompute(GLuint(sizes_.size() + cull_group - 1) / cull_group, 1, 1);

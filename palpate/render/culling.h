@@ -12,23 +12,25 @@
 
 namespace palpate {
 
-/// Finds which clusters of a surface that hangs on nodes can be seen, before any of its vertices is mapped:
-/// by the GPU, from the nodes alone. What is left out has no pixel, whatever the deformation: a cluster lies
-/// beyond one side of what is seen, or (in cells, where deformation bends little) all of it shows its back.
-/// Move-only; its context must be current whenever it is used, and when it ends.
+/// View-frustum and back-face culling of a surface that follows nodes, by clusters. A compute shader decides
+/// from the nodes alone, before any vertex is mapped. The test is conservative: a cluster is left out only if
+/// it lies outside the frustum, or if all its triangles are back faces (known only in cells, where the
+/// deformation bends little), so no pixel changes. Move-only; its context must be current whenever it is
+/// used, and when it ends.
 class Culling {
  public:
     Culling(const Clusters& clusters, const Mesh& mesh, const Embedding& embedding);
 
-    /// For the nodes that GpuEmbedding::bind has bound; `in_textures` says how. A compute shader, so a
-    /// program must be put to use after it. `hides_backs`: whether triangles that show their backs are not
-    /// drawn. `moved`: how far vertices may lie from where the embedding puts them, m.
-    void find(const View& view, bool hides_backs, bool in_textures, float moved) const;
+    /// Culls for the nodes that GpuEmbedding::bind has bound, in textures if `in_textures`. It runs a compute
+    /// shader, so bind your own program after it. `culls_back_faces`: whether back faces are not drawn.
+    /// `moved`: how far vertices may lie from where the embedding puts them, m.
+    void find(const View& view, bool culls_back_faces, bool in_textures, float moved) const;
 
-    /// Draws what find() has found, from the vertex array that is bound, to which Clusters::triangles belong.
+    /// Draws the clusters that find() has kept, from the vertex array that is bound, whose index buffer holds
+    /// Clusters::triangles.
     void draw() const;
 
-    /// What find() found last. Reads it back, so this is for measurements.
+    /// How many find() kept. It reads back from the GPU, so this is for measurements.
     Culled count(const gl::Context& context) const;
 
  private:

@@ -1,5 +1,5 @@
-// dent.glsl: the dents of a surface, for any stage of a shader. Before it stand #defines of MOST_DENTS, how many there can
-// be, and DENTS, the binding of their uniform block.
+// dent.glsl: the dents of a surface, for any stage of a shader. It needs two #defines before it: MOST_DENTS, how many
+// there can be, and DENTS, the binding of their uniform block.
 
 struct Dent {
     vec3 centre;

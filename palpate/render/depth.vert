@@ -1,4 +1,4 @@
-// A corner of anything, for shadow maps. If it has dents, their text stands before this one, with DENTS defined.
+// A vertex of anything, for shadow maps. With dents, their GLSL comes before this text and DENTS is defined.
 
 uniform mat4 to_clip;
 

@@ -1,16 +1,16 @@
-// A part of a cluster, as FramePart in culling.cpp: its vertices on the same three frames, between which weights of
-// the second and third they are, and for each frame the box that their arms fill.
+// A part of a cluster, as FramePart in culling.cpp: its vertices on the same three frames, the range of their second
+// and third weight, and for each frame the bounding box of their arms.
 
 struct Part {
     int frames[3];
     float low[2], high[2];
-    float arm[9], spread[9];  // the middles of the three boxes, and half their sizes
+    float arm[9], spread[9];  // the centres of the three boxes, and half their sizes
 };
 layout(std430, binding = 3) readonly buffer Parts { Part parts[]; };
 layout(std430, binding = 2) readonly buffer FoundFrames { mat4 found[]; };
 
 void include_part(int i, inout Box box) {
-    // Where each frame carries the middle of its box, and how far at most the rest of it is from there.
+    // Where each frame carries the centre of its box, and how far from there the rest of the box reaches.
     vec3 carried[3], beside[3];
     for (int k = 0; k < 3; ++k) {
         mat4 frame = found[parts[i].frames[k]];
@@ -29,5 +29,5 @@ void include_part(int i, inout Box box) {
     }
 }
 
-// Not known: each frame turns by itself.
+// Unknown, as each frame turns by itself.
 bool faces_away(Cluster c, int first, int end, Box box) { return false; }

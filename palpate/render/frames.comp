@@ -1,8 +1,8 @@
-// The gradient of the deformation at each frame, and where its node is: what find_frames does in deform.cpp.
+// The deformation gradient at each frame, and the position of its node: what find_frames does in deform.cpp.
 
 layout(local_size_x = 64) in;
 
-// As Frame, Spoke and Framed::faces lie in memory.
+// In the memory layout of Frame, Spoke and Framed::faces.
 struct Frame {
     int node;
     int spokes_end, faces_end;
@@ -30,7 +30,7 @@ void main() {
         float pull[3] = spokes[spoke].pull;
         gradient += outerProduct(node_position(spokes[spoke].to) - here, vec3(pull[0], pull[1], pull[2]));
     }
-    vec3 normals = vec3(0);  // of the faces round the node, each by its area
+    vec3 normals = vec3(0);  // of the faces around the node, weighted by area
     for (; face < frames[i].faces_end; ++face) {
         vec3 a = node_position(corners[3 * face]);
         normals += cross(node_position(corners[3 * face + 1]) - a, node_position(corners[3 * face + 2]) - a);

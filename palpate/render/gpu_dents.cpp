@@ -1,6 +1,6 @@
 #include "palpate/render/gpu_dents.h"
 
-#include "palpate/render/words.h"
+#include "palpate/render/macros.h"
 
 #include <array>
 
@@ -14,7 +14,7 @@ const char* dent_inl =
 #include "embedded/dent.inl.h"
     ;
 
-// As std140 lays out the block of dent.glsl.
+// The block of dent.glsl in its std140 layout.
 struct Placed {
     vec3 centre;
     float depth;
@@ -40,7 +40,7 @@ void GpuDents::set(std::span<const Dent> dents) {
 
 std::string GpuDents::shader(GLuint binding) {
     return "#define MOST_DENTS " + std::to_string(most_dents) + "\n#define DENTS " + std::to_string(binding) +
-           "\n" + dent_glsl + words_glsl + dent_inl + words_end_glsl;
+           "\n" + dent_glsl + macros_glsl + dent_inl + macros_end_glsl;
 }
 
 }  // namespace palpate

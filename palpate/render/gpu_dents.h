@@ -6,9 +6,9 @@
 
 namespace palpate {
 
-/// The dents of one surface in the memory of a GPU, and the GLSL by which shaders, ours or those of another
-/// OpenGL application, show them: what dented() and dented_normal() do on the host. Move-only; its context
-/// (4.5 core) must be current whenever it is used, and when it ends. With that context current, an
+/// The dents of one surface in the memory of a GPU, and the GLSL that shows them: what dented() and
+/// dented_normal() do on the host. For our shaders and for those of other OpenGL applications. Move-only; its
+/// context (4.5 core) must be current whenever it is used, and when it ends. With that context current, an
 /// application
 ///
 /// 1. puts shader() after the #version line of its vertex and of its fragment shader, and calls in the one
@@ -18,20 +18,20 @@ namespace palpate {
 /// 2. makes one of these for each surface, and before drawing that calls set(), if anything moved, and
 /// bind().
 ///
-/// Places, centres, depths and widths are in one space, which is the application's choice if nothing but
-/// turns and shifts it against the world. The names of dent.glsl and dent.inl are then taken.
+/// Places, centres, depths and widths are in one space, which the application may choose if it differs from
+/// the world by a rigid motion only. The names of dent.glsl and dent.inl are taken in those shaders.
 class GpuDents {
  public:
     /// Without any dents.
     GpuDents() { set({}); }
 
-    /// Those of `dents` that act; if they are more than most_dents, the first of them.
+    /// Sets those of `dents` that act; if there are more than most_dents, the first of them.
     void set(std::span<const Dent> dents);
 
     /// How many there are.
     int count() const { return count_; }
 
-    /// What is drawn next has these dents, in shaders whose text was made for the same `binding` of uniform
+    /// What is drawn next has these dents, if its shaders were made for the same `binding` of uniform
     /// buffers.
     void bind(GLuint binding = 0) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer_.name()); }
 

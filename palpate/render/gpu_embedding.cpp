@@ -1,7 +1,7 @@
 #include "palpate/render/gpu_embedding.h"
 
 #include "palpate/base/error.h"
-#include "palpate/render/words.h"
+#include "palpate/render/macros.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -36,7 +36,7 @@ const char* on_triangles_glsl =
 
 constexpr int frames_group = 64;  // as in frames.comp
 
-// Shaders read these as they lie.
+// Shaders read these in their layout in memory.
 static_assert(sizeof(Frame) == 15 * 4 && sizeof(Spoke) == 4 * 4);
 
 gl::Program finder(bool in_textures) {
@@ -44,7 +44,7 @@ gl::Program finder(bool in_textures) {
     return gl::Program({{GL_COMPUTE_SHADER, "frames.comp", text}});
 }
 
-// Attributes of one vertex array that lie together in one buffer, as members of a `Vertex`.
+// Attributes of one vertex array that are interleaved in one buffer, as members of a `Vertex`.
 template <class Vertex>
 class Attributes {
  public:
@@ -71,7 +71,7 @@ class Attributes {
 }  // namespace
 
 std::string nodes_shader(bool in_textures) {
-    return std::string(words_glsl) + mapping_inl +
+    return std::string(macros_glsl) + mapping_inl +
            (in_textures ? nodes_in_textures_glsl : nodes_in_buffers_glsl);
 }
 
@@ -136,14 +136,15 @@ void GpuEmbedding::attach_tangents(const std::vector<vec4>& tangents) {
 }
 
 std::string GpuEmbedding::shader(bool in_textures) const {
-    return nodes_shader(in_textures) + kind_ + mapping_glsl + words_end_glsl;
+    return nodes_shader(in_textures) + kind_ + mapping_glsl + macros_end_glsl;
 }
 
 void GpuEmbedding::bind(const GpuNodes& nodes) const {
     if (nodes.positions == 0 || (nodes.normals == 0 && needs_normals_))
         throw Error("no positions of nodes, or no normals where the mapping needs them", "the GPU's nodes",
                     "fill in both");
-    const GLuint normals = nodes.normals != 0 ? nodes.normals : nodes.positions;  // never read, but there
+    const GLuint normals = nodes.normals != 0 ? nodes.normals : nodes.positions;  // never read, but something
+                                                                                  // must be bound
     const bool in_textures = nodes.width > 0;
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     if (in_textures) {

@@ -1,5 +1,5 @@
 #version 450 core
-// The ground around the things. It fades towards its rim.
+// The ground below the things. It fades towards its rim.
 
 in vec3 place;
 in vec2 out_from_middle;
@@ -9,7 +9,7 @@ uniform vec3 upright;
 
 out vec4 colour;
 
-vec3 lit(vec3 normal, vec3 to_eye, vec3 look, float shine, float sky, float share);
+vec3 lit(vec3 normal, vec3 to_eye, vec3 albedo, float shine, float sky, float share);
 float sky_share(vec3 place, vec3 normal);
 float soft_key_share(vec3 place, vec3 normal);
 vec3 shown(vec3 light);

@@ -1,5 +1,5 @@
 #version 450 core
-// A square on the ground, wide enough for all of it that shows.
+// A square on the ground, wide enough for everything of it that shows.
 
 uniform mat4 to_clip;
 uniform vec3 middle;

@@ -1,4 +1,4 @@
-// A vertex as InCell has it.
+// A vertex in a cell (trilinear), with the attributes of InCell.
 
 layout(location = 0) in vec3 rest_normal;
 layout(location = 2) in vec3 at;

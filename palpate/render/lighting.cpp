@@ -25,12 +25,13 @@ Lighting lighting(const Picture& picture, std::span<const Bounds> surfaces, int 
     const vec3 direction = unit(picture.light.direction, vec3(0, -1, 0));
     light.to_light = -direction;
     light.key = picture.light.colour;
-    light.to_clip = along(direction, extent);
+    light.to_clip = light_projection(direction, extent);
     light.texel = 2 * extent.radius / static_cast<float>(pixels);
     return light;
 }
 
-void tell(const gl::Program& program, const View& view, const Lighting& light, std::size_t occluders) {
+void set_uniforms(const gl::Program& program, const View& view, const Lighting& light,
+                  std::size_t occluders) {
     program.set("to_clip", view.to_clip);
     program.set("eye", view.eye);
     program.set("up", view.up);

@@ -8,21 +8,22 @@
 
 namespace palpate {
 
-/// How the light of a picture falls.
+/// The light of a picture, as shaders need it.
 struct Lighting {
     vec3 to_light;              // unit
     vec3 key;                   // the light's colour
     mat4 to_clip;               // from the world to the shadow map's clip space
-    float texel;                // m; how wide a pixel of the shadow map is
-    std::vector<Bounds> round;  // the round things that hide the sky: first the balls, then the surfaces
+    float texel;                // m; the width of a pixel of the shadow map
+    std::vector<Bounds> round;  // the bounding boxes of things that hide the sky as ellipsoids (ambient
+                                // occlusion): first the balls, then the surfaces
 };
 
-/// For a shadow map of `pixels` a side, which what casts shadows fills. `surfaces`: the box around each of
+/// For a shadow map of `pixels` a side, fitted to what casts shadows. `surfaces`: the bounding box of each of
 /// the picture's.
 Lighting lighting(const Picture& picture, std::span<const Bounds> surfaces, int pixels);
 
-/// Sets all uniforms of light.frag and sky.glsl, and those of `view`. The first `occluders` of the round
-/// things hide the sky of what the program draws.
-void tell(const gl::Program& program, const View& view, const Lighting& light, std::size_t occluders);
+/// Sets all uniforms of light.frag and sky.glsl, and those of `view`. The first `occluders` of `light.round`
+/// hide the sky from what the program draws.
+void set_uniforms(const gl::Program& program, const View& view, const Lighting& light, std::size_t occluders);
 
 }  // namespace palpate

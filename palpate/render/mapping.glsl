@@ -1,4 +1,4 @@
-// Where a vertex of a surface is, with what it carries: the end of GpuEmbedding::shader().
+// Maps a vertex of a surface, with its normal and tangent: the end of GpuEmbedding::shader().
 
 layout(location = 1) in vec4 rest_tangent;
 

@@ -1,4 +1,4 @@
-// Nodes as GpuNodes has them in buffers.
+// Reads nodes from the buffers of GpuNodes.
 
 layout(std430, binding = 0) readonly buffer NodePositions { vec4 node_positions[]; };
 layout(std430, binding = 1) readonly buffer NodeNormals { vec4 node_normals[]; };

@@ -1,4 +1,4 @@
-// Nodes as GpuNodes has them in flat textures.
+// Reads nodes from the flat textures of GpuNodes.
 
 layout(binding = 2) uniform sampler2D node_positions;
 layout(binding = 3) uniform sampler2D node_normals;

@@ -1,4 +1,4 @@
-// A vertex as OnFrames has it, on frames that frames.comp has found.
+// A vertex on three frames, with the attributes of OnFrames. frames.comp has found the frames.
 
 layout(location = 0) in vec3 rest_normal;
 layout(location = 2) in vec3 weights;

@@ -1,4 +1,4 @@
-// A vertex as OnTriangle has it.
+// A vertex on a triangle of nodes, with the attributes of OnTriangle: barycentric weights and an offset.
 
 layout(location = 0) in vec3 rest_normal;
 layout(location = 2) in vec3 weights;

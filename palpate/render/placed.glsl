@@ -1,6 +1,6 @@
 #version 450 core
-// A vertex that is where its attributes say: of a surface that was mapped on the host, or of a ball, which is
-// the unit ball made as big as `size` and moved to `centre`.
+// A vertex whose position is an attribute: of a surface that was mapped on the host, or of a ball, which is the unit
+// ball scaled by `size` and moved to `centre`.
 
 layout(location = 0) in vec3 given_position;
 layout(location = 1) in vec3 given_normal;

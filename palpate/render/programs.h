@@ -9,21 +9,21 @@
 
 namespace palpate {
 
-/// Whether a surface has dents, and where its normals are then turned.
+/// Whether a surface has dents, and in which shader they turn its normals.
 enum class Dented { no, at_vertices, at_fragments };
 
-/// What not every surface has. One without it gets programs without it, since a software driver runs both
+/// What only some surfaces have. Each combination has shaders of its own, since a software driver runs both
 /// sides of every branch.
 struct Features {
     Dented dented = Dented::no;
-    bool images = false;  // laid over it, or one of its normals as colours
+    bool images = false;  // a colour map or a normal map, or normals shown as colours
 
     auto operator<=>(const Features&) const = default;
 };
 
-/// What draws surfaces whose vertices lie where `map_vertex`, the text of a shader that defines a function of
-/// that name, says; moved and turned by the GpuDents that are bound to `dents_binding`. `key_light`: the text
-/// that says how much of it gets to a place.
+/// The programs that draw surfaces. `map_vertex` is the text of a shader that defines a function of that
+/// name, which places the vertices; the GpuDents bound to `dents_binding` then move them. `key_light` is the
+/// text that defines key_share(): how much of the key light reaches a place.
 struct SurfacePrograms {
     static constexpr GLuint dents_binding = 1;
 
@@ -33,10 +33,11 @@ struct SurfacePrograms {
     SurfacePrograms(std::string_view map_vertex, std::string_view key_light, Features features = {});
 };
 
-/// The map_vertex of surfaces that were mapped on the host, and of balls.
+/// The map_vertex() of surfaces that were mapped on the host, and of balls.
 extern const char* const placed_glsl;
 
-/// What draws the parts of a picture. Each name is also that of its shader files, which say what they take.
+/// The programs that draw the parts of a picture. Each has the name of its shader files, which list their
+/// uniforms.
 class Programs {
  public:
     /// Whether things cast shadows.
@@ -46,7 +47,7 @@ class Programs {
     const SurfacePrograms& surface(const std::string& map_vertex, Features features);
 
     gl::Program background;
-    SurfacePrograms placed;  // by placed_glsl, without features
+    SurfacePrograms placed;  // with placed_glsl, without features
     gl::Program ground;
     gl::Program wires;
 

@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-// From the places under vertices, on the nodes' side, to the vertices.
+// The vectors from anchors to their vertices.
 
 std::vector<vec3> ways(const Mesh&, const Embedding& embedding, const std::vector<InCell>& vertices) {
     std::vector<vec3> list;
@@ -13,7 +13,8 @@ std::vector<vec3> ways(const Mesh&, const Embedding& embedding, const std::vecto
     return list;
 }
 
-// Of the offset, which is known in a basis that is not, the part along the normal, which nearly all of it is.
+// The part of the offset along the normal, which is nearly all of it; the rest is given in a basis that is
+// unknown here.
 std::vector<vec3> ways(const Mesh& mesh, const Embedding&, const std::vector<OnTriangle>& vertices) {
     std::vector<vec3> normals = mesh.normals;
     if (normals.size() != mesh.positions.size()) compute_normals(mesh.positions, mesh.triangles, normals);

@@ -3,17 +3,18 @@
 
 namespace palpate {
 
-/// How a surface at rest lies about the nodes that it hangs on. As it deforms, nobody on the host knows where
-/// it is, but of the nodes that is known.
+/// How far a surface at rest reaches beyond the nodes that it follows. It gives an estimate of the surface's
+/// bounding box where the GPU maps it: the host then knows the box of the nodes, but no vertex.
 struct Reach {
-    float growth = 1;  // how many times as wide the surface is as the places under its vertices
-    float beyond = 0;  // m, the longest way from such a place to its vertex
+    float growth = 1;  // the width of the surface over the width of its anchors, the places under its
+                       // vertices
+    float beyond = 0;  // m, the greatest distance from an anchor to its vertex
 
-    /// A box around the surface, from the box around its nodes.
+    /// The bounding box of the surface, estimated from that of its nodes.
     Bounds around(const Bounds& nodes) const;
 };
 
-/// `mesh` is the one that was embedded.
+/// `mesh`: the one that was embedded.
 Reach reach(const Mesh& mesh, const Embedding& embedding);
 
 }  // namespace palpate

@@ -4,11 +4,11 @@
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
 #include "palpate/gl/visit.h"
+#include "palpate/render/ambient_occlusion.h"
 #include "palpate/render/culling.h"
 #include "palpate/render/gpu_dents.h"
 #include "palpate/render/gpu_embedding.h"
 #include "palpate/render/lighting.h"
-#include "palpate/render/openness.h"
 #include "palpate/render/programs.h"
 #include "palpate/render/reach.h"
 #include "palpate/render/shadow_map.h"
@@ -32,7 +32,7 @@ namespace {
 
 constexpr int shadow_size = 1024;    // pixels
 constexpr float wire_width = 1.3f;   // pixels
-constexpr float wire_lift = 0.005f;  // in radii of the things; see wires.vert
+constexpr float wire_lift = 0.005f;  // in radii of the scene; see wires.vert
 constexpr float ball_shine = 0.4f;
 constexpr std::size_t few_triangles = 24'000, few_of_ball = 1'280;
 constexpr std::size_t cluster_vertices = 64, cluster_faces = 124;
@@ -42,45 +42,45 @@ constexpr GLuint colour_map_unit = 4, normal_map_unit = 5;  // as in surface.fra
 enum Attribute : GLuint {
     position_attribute,
     normal_attribute,
-    openness_attribute = GpuEmbedding::free_attribute,
+    ambient_occlusion_attribute = GpuEmbedding::free_attribute,
     uv_attribute
 };
 
 struct Triangles {
     gl::Buffer corners;
-    GLsizei count = 0;  // of corners
+    GLsizei count = 0;  // of indices
 };
 
-// What does not move of a mesh.
+// What is constant of a mesh.
 struct DrawnMesh {
     Triangles triangles;
-    Triangles few;  // in their place, where not every triangle is drawn
-    gl::Buffer openness, uvs;
+    Triangles few;  // the level of detail for Quality::every_triangle = false
+    gl::Buffer ambient_occlusion, uvs;
     bool has_uvs = false;
     std::size_t vertices = 0;
-    bool closed = false;  // then nobody sees its triangles from behind
-    // Of one that was added with an embedding:
+    bool closed = false;  // then its back faces are never seen
+    // If it was added with an embedding:
     std::optional<GpuEmbedding> embedding;
     std::optional<Culling> culling;
     Reach reach;
 };
 
-// What moves of it, for one surface of the picture: of its vertices, or of the nodes that they hang on.
+// What moves of it, for one surface of the picture: its vertices, or the nodes that they follow.
 struct Moving {
     gl::Buffer positions;
     gl::Buffer normals;
-    GpuNodes nodes = {};  // where it hangs on nodes: in these buffers, or whose they are
+    GpuNodes nodes = {};  // if it follows nodes: these buffers, or the picture's
     GpuDents dents;
 };
 
-// How surfaces are drawn, for a picture or for a shadow map.
+// One pass over the surfaces, for the picture or for a shadow map.
 struct SurfacePass {
     View view;
-    std::function<const gl::Program&(const SurfacePrograms&)> begin;  // tells the program what it shall know
+    std::function<const gl::Program&(const SurfacePrograms&)> begin;  // sets the uniforms of the program
     bool culls;
 };
 
-// Whether triangles lie on both sides of every edge and turn their fronts outwards.
+// Whether the mesh is closed, with two triangles at every edge, and its triangles face outwards.
 bool closed(const Mesh& mesh) {
     std::vector<std::pair<unsigned, unsigned>> there, back;
     for (uvec3 t : mesh.triangles)
@@ -97,11 +97,11 @@ Triangles buffered(const std::vector<uvec3>& list) {
     return {gl::Buffer(list), static_cast<GLsizei>(3 * list.size())};
 }
 
-DrawnMesh model(const Mesh& mesh, gl::Buffer openness, std::size_t few = few_triangles) {
+DrawnMesh model(const Mesh& mesh, gl::Buffer ambient_occlusion, std::size_t few = few_triangles) {
     DrawnMesh made;
     made.triangles = buffered(mesh.triangles);
     made.few = buffered(thinned(mesh, few));
-    made.openness = std::move(openness);
+    made.ambient_occlusion = std::move(ambient_occlusion);
     made.has_uvs = !mesh.uvs.empty();
     made.uvs = gl::Buffer(mesh.uvs);
     made.vertices = mesh.positions.size();
@@ -114,7 +114,7 @@ gl::Buffer wide_open(std::size_t vertices) {
     return gl::Buffer(ones);
 }
 
-// An attribute from a buffer of its own, which is bound as the attribute is numbered.
+// An attribute from a buffer of its own, whose binding has the attribute's number.
 void enable(GLuint corners, Attribute number, int numbers) {
     glEnableVertexArrayAttrib(corners, number);
     glVertexArrayAttribFormat(corners, number, numbers, GL_FLOAT, GL_FALSE, 0);
@@ -125,14 +125,15 @@ gl::VertexArray corners_of_surfaces() {
     gl::VertexArray corners;
     enable(corners.name(), position_attribute, 3);
     enable(corners.name(), normal_attribute, 3);
-    enable(corners.name(), openness_attribute, 1);
+    enable(corners.name(), ambient_occlusion_attribute, 1);
     enable(corners.name(), uv_attribute, 2);
     return corners;
 }
 
-// What does not move of a model, for the vertices that `corners` describes.
+// Attaches the constant attributes of a model to the vertex array `corners`.
 void attach(const DrawnMesh& model, GLuint corners) {
-    glVertexArrayVertexBuffer(corners, openness_attribute, model.openness.name(), 0, sizeof(float));
+    glVertexArrayVertexBuffer(corners, ambient_occlusion_attribute, model.ambient_occlusion.name(), 0,
+                              sizeof(float));
     glVertexArrayVertexBuffer(corners, uv_attribute, model.uvs.name(), 0, sizeof(vec2));
     (model.has_uvs ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(corners, uv_attribute);
 }
@@ -149,12 +150,12 @@ gl::Sampler sampler_of_maps() {
     return sampler;
 }
 
-// OpenGL's rows go up.
+// OpenGL's rows go from bottom to top.
 gl::Texture texture_of(const Image& image, Texels texels) {
     check_size(image.width, image.height);
     if (image.pixels.size() != 4 * std::size_t(image.width) * std::size_t(image.height))
-        throw Error("an image of another number of pixels than its size says", "Renderer",
-                    "give it four bytes a pixel");
+        throw Error("an image whose number of pixels differs from its width times height", "Renderer",
+                    "give it four bytes for each pixel");
     std::vector<std::uint8_t> rows;
     rows.reserve(image.pixels.size());
     const std::ptrdiff_t bytes = 4 * std::ptrdiff_t(image.width);
@@ -178,11 +179,11 @@ Bounds box_around(const Surface& surface, const Reach& reach) {
                                                          : bounds_of(surface.nodes.positions));
 }
 
-// The square of ground that is drawn: its middle is below the things.
+// The square of ground that is drawn. Its centre is below the things.
 struct Square {
     vec3 upright;
     vec3 middle;
-    float half;  // m; half as wide
+    float half;  // m; half its width
 };
 
 Square square(const Ground& ground, const Extent& things) {
@@ -191,8 +192,8 @@ Square square(const Ground& ground, const Extent& things) {
     return {upright, things.centre + away * upright, 3.5f * things.radius + 2 * std::abs(away)};
 }
 
-// Around the grounds as well, which the near and far planes must not cut.
-Extent reach(const Picture& picture, const Extent& things) {
+// The bounding sphere of things and grounds: the near and far planes must cut neither.
+Extent with_grounds(const Picture& picture, const Extent& things) {
     Extent all = things;
     for (const Ground& ground : picture.grounds) {
         const Square part = square(ground, things);
@@ -204,11 +205,11 @@ Extent reach(const Picture& picture, const Extent& things) {
 
 void check(const Quality& quality) {
     if (quality.samples != 1 && quality.samples != 2 && quality.samples != 4 && quality.samples != 8)
-        throw Error(fmt::format("{} samples of a pixel cannot be drawn", quality.samples), "Quality",
+        throw Error(fmt::format("{} samples per pixel cannot be drawn", quality.samples), "Quality",
                     "choose 1, 2, 4 or 8");
     if (!(quality.scale >= 0.25f && quality.scale <= 1))
-        throw Error(fmt::format("{} times as many pixels cannot be drawn", quality.scale), "Quality",
-                    "choose 0.25 to 1");
+        throw Error(fmt::format("a scale of {} for the number of pixels is out of range", quality.scale),
+                    "Quality", "choose 0.25 to 1");
 }
 
 Target target(Offscreen size, const Quality& quality) {
@@ -222,17 +223,17 @@ Target target(Offscreen size, const Quality& quality) {
 }  // namespace
 
 struct Renderer::Parts {
-    std::optional<gl::Context> own;  // first, because all the rest lives in it
+    std::optional<gl::Context> own;  // first, because everything else lives in it
     const gl::Context& context;
     Offscreen size;
     Quality quality;
     Target target;
     ShadowMap shadow{shadow_size};
-    Openness openness;
+    AmbientOcclusion ambient_occlusion;
     std::map<bool, Programs> all_programs;  // with shadows and without
 
     gl::VertexArray surface_corners = corners_of_surfaces();
-    gl::VertexArray no_corners;  // for shaders that make their own
+    gl::VertexArray no_corners;  // for shaders that make their own vertices
     std::vector<gl::Texture> maps;
     gl::Sampler map_sampler = sampler_of_maps();
     std::vector<DrawnMesh> models;
@@ -275,7 +276,7 @@ const gl::Context& current(std::optional<gl::Context>& own, const gl::Context* g
 
 Renderer::Parts::Parts(Offscreen wanted, const gl::Context* given)
     : context(current(own, given)), size(wanted), target(palpate::target(size, quality)) {
-    programs();  // a driver that cannot compile them says so here
+    programs();  // compiles them here, so that a driver that cannot do so fails early
     const Mesh mesh = unit_ball();
     ball_model = model(mesh, wide_open(mesh.positions.size()), few_of_ball);
     ball_shape.positions = gl::Buffer(mesh.positions);
@@ -295,20 +296,21 @@ void Renderer::Parts::check(const Picture& picture) const {
         const DrawnMesh& model = models[std::size_t(surface.mesh)];
         if (!surface.positions.empty() || !model.embedding) {
             require(surface.positions.size() == model.vertices && surface.normals.size() == model.vertices,
-                    "a surface of another number of positions or normals than its mesh has vertices",
+                    "a surface whose number of positions or normals differs from the number of its mesh's "
+                    "vertices",
                     "give every vertex one of each, or add the mesh with an embedding and give it nodes");
         } else if (surface.gpu_nodes.positions == 0) {
             const std::size_t count = model.embedding->nodes();
-            require(surface.nodes.positions.size() >= count, "fewer nodes than the surface hangs on",
+            require(surface.nodes.positions.size() >= count, "fewer nodes than the surface follows",
                     "hand in all nodes of its body");
             require(!model.embedding->needs_normals() || surface.nodes.normals.size() >= count,
-                    "no approximate normals of nodes, which the surface's mapping needs",
+                    "the approximate normals of the nodes are missing, which the surface's mapping needs",
                     "hand in Solver::nodes(), or approximate_normals()");
         }
     }
     for (const Wires& some : picture.wires)
         for (uvec2 line : some.lines)
-            require(std::max(line.x, line.y) < some.points.size(), "a line to a point that is not there",
+            require(std::max(line.x, line.y) < some.points.size(), "a line that refers to a missing point",
                     "count points from 0");
 }
 
@@ -316,14 +318,14 @@ void Renderer::Parts::draw(const Picture& picture) {
     const std::vector<Bounds> around = boxes(picture.surfaces);
     const Extent things = extent(picture, around);
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-    const View seen = view(picture.camera, aspect, reach(picture, things));
+    const View seen = view(picture.camera, aspect, with_grounds(picture, things));
     const Lighting light = lighting(picture, around, shadow_size);
     auto begin = [&](const SurfacePrograms& some) -> const gl::Program& {
-        tell(some.shown, seen, light, picture.balls.size());
+        set_uniforms(some.shown, seen, light, picture.balls.size());
         return some.shown;
     };
     const SurfacePass shown{seen, begin, picture.culls};
-    tell(programs().ground, seen, light, light.round.size());
+    set_uniforms(programs().ground, seen, light, light.round.size());
 
     upload(picture.surfaces);
     if (quality.shadows) cast_shadows(picture, light);
@@ -333,7 +335,7 @@ void Renderer::Parts::draw(const Picture& picture) {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     for (const Wires& some : picture.wires) draw_wires(some, seen, things);
-    // After the wires, which shine through a surface but not through a tool.
+    // After the wires, as they shine through surfaces but not through tools.
     draw_balls(picture.balls, shown);
     for (const Ground& one : picture.grounds) draw_ground(one, seen, things);
     glDisable(GL_BLEND);
@@ -387,7 +389,7 @@ void Renderer::Parts::draw_background() {
     const gl::Program& background = programs().background;
     background.use();
     background.set("picture", vec2(target.width(), target.height()));
-    glDepthFunc(GL_LEQUAL);  // where nothing is yet, which is as far
+    glDepthFunc(GL_LEQUAL);  // only where nothing is drawn yet: the background lies on the far plane
     glBindVertexArray(no_corners.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthFunc(GL_LESS);
@@ -411,7 +413,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
         const bool dented = moving[i].dents.count() > 0;
         if (dented) moving[i].dents.bind(SurfacePrograms::dents_binding);
         const bool culls = pass.culls && quality.every_triangle && moving[i].nodes.positions != 0;
-        // A dent turns triangles as it likes, but takes them no further than that.
+        // A dent may turn triangles arbitrarily, but moves them no farther than this.
         if (culls)
             model.culling->find(pass.view, model.closed && !dented, moving[i].nodes.width > 0,
                                 furthest(surfaces[i].dents));
@@ -419,7 +421,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
         program.set("centre", vec3(0));
         program.set("size", 1.0f);
         set_look(program, surfaces[i].look, model, moving[i]);
-        // Fragments are what costs, and half of them would be the far side's.
+        // Back-face culling saves half of the fragments, which are what costs most.
         if (model.closed) glEnable(GL_CULL_FACE);
         if (culls)
             model.culling->draw();
@@ -437,7 +439,7 @@ void Renderer::Parts::draw_balls(const std::vector<Ball>& balls, const SurfacePa
     for (const Ball& ball : balls) {
         program.set("centre", ball.centre);
         program.set("size", ball.radius);
-        program.set("look", ball.colour);
+        program.set("albedo", ball.colour);
         draw_triangles(ball_model);
     }
 }
@@ -458,7 +460,7 @@ void Renderer::Parts::set_look(const gl::Program& program, const Look& look, con
     const bool has_tangents = shape.nodes.positions != 0 && model.embedding->has_tangents();
     const bool coloured = look.colour_map >= 0 && model.has_uvs;
     const bool bumpy = look.normal_map >= 0 && model.has_uvs && has_tangents;
-    program.set("look", look.colour);
+    program.set("albedo", look.colour);
     program.set("shine", look.shine);
     program.set("coloured", coloured);
     program.set("bumpy", bumpy);
@@ -475,7 +477,7 @@ void Renderer::Parts::draw_triangles(const DrawnMesh& model) const {
     glDrawElements(GL_TRIANGLES, triangles(model).count, GL_UNSIGNED_INT, nullptr);
 }
 
-// Twice: where nothing hides the lines, and then faintly the others.
+// Draws them twice: where nothing hides them, and faintly where something does.
 void Renderer::Parts::draw_wires(const Wires& some, const View& seen, const Extent& things) {
     if (some.lines.empty()) return;
     wire_points.upload(some.points);
@@ -491,7 +493,7 @@ void Renderer::Parts::draw_wires(const Wires& some, const View& seen, const Exte
     wires.set("radius", things.radius);
     wires.set("picture", vec2(target.width(), target.height()));
     wires.set("width", wire_width);
-    wires.set("look", some.colour);
+    wires.set("albedo", some.colour);
     glBindVertexArray(no_corners.name());
 
     const auto lines = static_cast<GLsizei>(some.lines.size());
@@ -553,7 +555,8 @@ int Renderer::add(const Mesh& mesh) {
     check(mesh, "a mesh that is added to a Renderer");
     parts_->context.make_current();
     const gl::Visit visit;
-    parts_->models.push_back(model(mesh, parts_->openness.measure(mesh, parts_->programs().placed.depth)));
+    parts_->models.push_back(
+        model(mesh, parts_->ambient_occlusion.measure(mesh, parts_->programs().placed.depth)));
     return static_cast<int>(parts_->models.size()) - 1;
 }
 
@@ -566,7 +569,7 @@ int Renderer::add(const Mesh& mesh, const Embedding& embedding) {
     model.culling.emplace(groups, mesh, embedding);
     model.reach = palpate::reach(mesh, embedding);
     const GLuint corners = model.embedding->vertex_array();
-    enable(corners, openness_attribute, 1);
+    enable(corners, ambient_occlusion_attribute, 1);
     enable(corners, uv_attribute, 2);
     attach(model, corners);
     return number;
@@ -599,7 +602,7 @@ Image Renderer::image() const {
 
 Culled Renderer::culled(int mesh) const {
     if (mesh < 0 || std::size_t(mesh) >= parts_->models.size())
-        throw Error("no mesh of number " + std::to_string(mesh), "the Renderer",
+        throw Error("no mesh has the number " + std::to_string(mesh), "the Renderer",
                     "use what Renderer::add gave");
     const DrawnMesh& model = parts_->models[std::size_t(mesh)];
     return model.culling ? model.culling->count(parts_->context) : Culled{};

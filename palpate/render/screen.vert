@@ -1,5 +1,5 @@
 #version 450 core
-// One triangle that covers the whole picture, as far away as anything can be.
+// One triangle that covers the whole picture, on the far plane.
 
 void main() {
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);

@@ -3,17 +3,17 @@
 
 namespace palpate {
 
-/// How far parallel light gets before something stops it. What lies outside of the map is lit.
+/// The depth of what parallel light meets first. What lies outside the map is lit.
 class ShadowMap {
  public:
     /// `size` pixels wide and high.
     explicit ShadowMap(int size);
 
-    /// What is drawn next, seen from the light and its depth only, stops that.
+    /// What is drawn next, as seen from the light, casts shadows; only its depth is kept.
     void begin() const;
 
-    /// For shaders to read, at texture unit 0 as a sampler2DShadow (1 where lit, 0 where shadowed), and at 1
-    /// as a sampler2D (the depth at which the light stopped, 0 to 1).
+    /// Binds it for shaders: to texture unit 0 as a sampler2DShadow (1 where lit, 0 in shadow), and to unit 1
+    /// as a sampler2D (the depth at which the light was stopped, 0 to 1).
     void bind() const;
 
     int size() const { return depth_.width(); }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int parts_of_a_rounding = 10;
 
-// Where the grid lines of a rounded box's faces lie along one axis: even angles round its edges.
+// The positions of the grid lines of a rounded box's faces along one axis: at even angles round its edges.
 std::vector<float> grid_lines(float half, float rounding) {
     std::vector<float> lines;
     for (int i = parts_of_a_rounding; rounding > 0 && i > 0; --i)
@@ -18,12 +18,12 @@ std::vector<float> grid_lines(float half, float rounding) {
                         rounding * std::tan(std::numbers::pi_v<float> / 4 * float(i) / parts_of_a_rounding));
     lines.push_back(half);
     for (std::size_t i = lines.size(); i-- > 0;)
-        if (lines[i] > 0) lines.push_back(-lines[i]);  // no line twice where the box has no width
+        if (lines[i] > 0) lines.push_back(-lines[i]);  // no duplicate line where the box has no width
     for (float& line : lines) line = -line;
     return lines;
 }
 
-// A box around the origin, made by drawing the grids on its outer faces in to its rounded edges.
+// A rounded box around the origin: the grids on the faces of a sharp box, projected onto its rounded edges.
 Mesh round_box(vec3 half, float rounding) {
     Mesh mesh;
     for (int axis = 0; axis < 3; ++axis)

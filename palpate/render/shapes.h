@@ -4,8 +4,8 @@
 
 namespace palpate {
 
-/// What a collider looks like, with normals: a capsule, a box, a polygon's triangles, the surface in a
-/// distance field. Empty for a plane and a sphere, which a Picture shows as a Ground and a Ball.
+/// The mesh that shows a collider, with normals: a capsule, a box, a polygon's triangles, the zero isosurface
+/// of a distance field. Empty for a plane and a sphere, which a Picture shows as a Ground and a Ball.
 Mesh shape_mesh(const Collider& collider);
 
 }  // namespace palpate

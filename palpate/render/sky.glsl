@@ -1,13 +1,13 @@
 #version 450 core
-// How much of the sky round things hide. For vertices and for fragments.
+// Ambient occlusion by round things, for vertex and fragment shaders.
 
 const int most_occluders = 8;
 uniform int occluders;
 uniform vec3 occluder_centre[most_occluders];
-uniform vec3 occluder_half[most_occluders];  // half its length along each axis
+uniform vec3 occluder_half[most_occluders];  // its semi-axes
 
-// The share of the sky that the round things near a place leave to it. Each counts as an ellipsoid: in the
-// space where that is a unit ball, it hides the cosine over the squared distance, but never all.
+// The share of the sky that a place sees past the round things near it. Each counts as an ellipsoid: in the space
+// where that is a unit ball, it hides the cosine over the squared distance, but never all.
 float sky_share(vec3 place, vec3 normal) {
     float share = 1;
     for (int i = 0; i < occluders; ++i) {

@@ -1,26 +1,26 @@
-// A surface or a ball. If it has dents and their normals are turned here, their text stands before this one, with DENTS
-// defined; and IMAGES, if it may not be of one colour and as smooth as its vertices say all over.
+// A surface or a ball. With dents that turn normals here, their GLSL comes before this text and DENTS is defined.
+// IMAGES is defined if it may have a colour map or a normal map, or shows its normals as colours.
 
 in vec3 place;
 in vec3 facing;
 #ifdef DENTS
-in vec3 undented;  // where the place would be without dents, with the normal `facing`
+in vec3 undented;  // the position before the dents, whose normal is `facing`
 #endif
-in float sky;  // the share of it that the place sees
+in float sky;  // ambient occlusion: the share of the sky that the place sees
 
 uniform vec4 eye;  // see View
 uniform vec3 to_light;
-uniform vec3 look;
+uniform vec3 albedo;
 uniform float shine;
 
 out vec4 colour;
 
-vec3 lit(vec3 normal, vec3 to_eye, vec3 look, float shine, float sky, float share);
+vec3 lit(vec3 normal, vec3 to_eye, vec3 albedo, float shine, float sky, float share);
 float key_share(vec3 place, vec3 normal, float softness, int taps);
 vec3 shown(vec3 light);
 
 #ifdef IMAGES
-in vec4 along_u;  // the tangent, and whether v runs along the normal × it, 1, or against, -1
+in vec4 along_u;  // the tangent; w is the sign of the bitangent: 1 if v runs along normal × tangent, -1 if against it
 in vec2 uv;
 
 layout(binding = 4) uniform sampler2D colour_map;
@@ -30,7 +30,7 @@ uniform bool coloured;       // whether there is a colour map,
 uniform bool bumpy;          // and a normal map
 uniform bool shows_normals;  // see Look
 
-// What the normal map says, about a normal on the front side.
+// Normal mapping: `normal` turned by the normal map, on the front side.
 vec3 bumped(vec3 normal) {
     if (!bumpy) return normal;
     vec3 tangent = along_u.xyz - dot(along_u.xyz, normal) * normal;
@@ -42,12 +42,12 @@ vec3 bumped(vec3 normal) {
 }
 
 vec3 own_colour(vec3 smooth_normal) {
-    if (shows_normals) return pow(max(0.5 + 0.5 * smooth_normal, 0), vec3(2.2));  // so that the screen shows them evenly
-    return coloured ? look * texture(colour_map, uv).rgb : look;
+    if (shows_normals) return pow(max(0.5 + 0.5 * smooth_normal, 0), vec3(2.2));  // undoes the screen's gamma
+    return coloured ? albedo * texture(colour_map, uv).rgb : albedo;
 }
 #else
 vec3 bumped(vec3 normal) { return normal; }
-vec3 own_colour(vec3 normal) { return look; }
+vec3 own_colour(vec3 normal) { return albedo; }
 #endif
 
 void main() {

@@ -1,8 +1,8 @@
-// A corner of a surface or of a ball. What it is linked with says where that is. If it has dents, their text stands before
-// this one, with DENTS defined; and TURNED_HERE, if their normals are turned here and not in surface.frag. IMAGES is defined
-// if surface.frag has to know how images lie on it.
+// A vertex of a surface or of a ball, at the position that map_vertex() gives. With dents, their GLSL comes before
+// this text and DENTS is defined; TURNED_HERE too, if they turn normals here and not in surface.frag. IMAGES is
+// defined if surface.frag needs texture coordinates and tangents.
 
-layout(location = 8) in float openness;
+layout(location = 8) in float ambient_occlusion;
 #ifdef IMAGES
 layout(location = 9) in vec2 texture_place;
 #endif
@@ -10,15 +10,15 @@ layout(location = 9) in vec2 texture_place;
 uniform mat4 to_clip;
 
 out vec3 place;
-out vec3 facing;    // not turned by dents yet, unless TURNED_HERE
+out vec3 facing;    // the normal, before dents turn it unless TURNED_HERE
 #ifdef DENTS
-out vec3 undented;  // where the place would be without them
+out vec3 undented;  // the position before them
 #endif
 #ifdef IMAGES
 out vec4 along_u;
 out vec2 uv;
 #endif
-out float sky;  // the share of it that the place sees
+out float sky;  // ambient occlusion: the share of the sky that the place sees
 
 void map_vertex(out vec3 position, out vec3 normal, out vec4 tangent);
 float sky_share(vec3 place, vec3 normal);
@@ -39,8 +39,8 @@ void main() {
     along_u = tangent;
     uv = texture_place;
 #endif
-    // What the surface at rest leaves of the sky, with more contrast than nature's so that grooves read as
-    // grooves, and what the tools leave of that. It is smooth, so that once a vertex is enough.
-    sky = openness * openness * sky_share(place, normal);
+    // The surface's own ambient occlusion, squared to make grooves stand out, times that of the tools. It is smooth,
+    // so once per vertex is enough.
+    sky = ambient_occlusion * ambient_occlusion * sky_share(place, normal);
     gl_Position = to_clip * vec4(place, 1);
 }

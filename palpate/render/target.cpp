@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-// Checked before anything is made, so that no texture of an impossible size is asked for.
+// Checked first, so that no texture of an impossible size is requested.
 int checked_width(int width, int height) {
     check_size(width, height);
     return width;

@@ -11,15 +11,15 @@ namespace palpate {
 /// Throws Error if the driver has no images of that size, in pixels.
 void check_size(int width, int height);
 
-/// An image in the GPU's memory to draw into, with several samples a pixel for smooth edges. Light in it is
-/// linear; the GPU turns it into sRGB where it stores it.
+/// An image in the GPU's memory to draw into, with several samples a pixel for smooth edges (multisampling).
+/// Shaders write linear light; the GPU encodes it as sRGB.
 class Target {
  public:
-    /// In pixels. Throws Error if the driver has no images of that size. If it has not that many samples,
-    /// they are as many as it has.
+    /// In pixels. Throws Error if the driver has no images of that size. If it does not offer that many
+    /// samples, it takes as many as there are.
     Target(int width, int height, int samples);
 
-    /// Clears it and makes it what is drawn into.
+    /// Clears it and binds it for drawing.
     void begin() const;
 
     /// Averages the samples of each pixel.
@@ -37,7 +37,7 @@ class Target {
 
  private:
     gl::Texture pixels_, depth_;
-    std::optional<gl::Texture> samples_;  // where they are more than one a pixel
+    std::optional<gl::Texture> samples_;  // if there is more than one a pixel
     gl::Framebuffer drawn_, shown_;
 };
 

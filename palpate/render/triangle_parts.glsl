@@ -1,5 +1,5 @@
-// A part of a cluster, as TrianglePart in culling.cpp: its vertices on one triangle, between which weights of the
-// second and third node their places in that are, and how far from those places they are at most.
+// A part of a cluster, as TrianglePart in culling.cpp: its vertices on one triangle, the range of their barycentric
+// weights of the second and third node, and how far at most they are from their places in the triangle.
 
 struct Part {
     int nodes[3];
@@ -20,5 +20,5 @@ void include_part(int i, inout Box box) {
     }
 }
 
-// Not known: the basis of each triangle turns by itself.
+// Unknown, as the basis of each triangle turns by itself.
 bool faces_away(Cluster c, int first, int end, Box box) { return false; }

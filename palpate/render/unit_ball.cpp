@@ -20,7 +20,7 @@ Mesh icosahedron() {
     return mesh;
 }
 
-// Halves every edge, which makes four triangles of each.
+// Splits every edge in half, so each triangle becomes four.
 void refine(Mesh& mesh) {
     std::map<std::pair<unsigned, unsigned>, unsigned> middles;
     auto middle = [&](unsigned a, unsigned b) {

@@ -3,8 +3,8 @@
 
 namespace palpate {
 
-/// A ball of radius 1 around the origin, whose outline is true to a thousandth. Its positions are also its
-/// normals.
+/// A sphere of radius 1 around the origin, subdivided until its outline is accurate to a thousandth. Its
+/// positions are also its normals.
 Mesh unit_ball();
 
 }  // namespace palpate

@@ -8,10 +8,10 @@
 namespace palpate {
 namespace {
 
-// Neither NaN nor farther off than any sane thing, so that squares and sums of a few stay finite.
+// Neither NaN nor absurdly far away, so that squares and sums of a few stay finite.
 bool usable(vec3 v) { return dot(v, v) < 1e18f; }
 
-mat4 from(vec3 eye, const mat3& axes) { return translate(mat4(transpose(axes)), -eye); }
+mat4 view_matrix(vec3 eye, const mat3& axes) { return translate(mat4(transpose(axes)), -eye); }
 
 }  // namespace
 
@@ -69,7 +69,7 @@ View view(const Camera& wanted, float aspect, const Extent& things) {
     const float angle = glm::radians(camera.angle >= 1 ? std::min(camera.angle, 170.0f) : 1.0f);
     const float distance = std::max(length(camera.look_at - camera.eye), 1e-3f * things.radius);
     const float depth = dot(things.centre - camera.eye, forward);
-    const mat4 to_eye = from(camera.eye, axes(forward, up));
+    const mat4 to_eye = view_matrix(camera.eye, axes(forward, up));
 
     if (camera.orthographic) {
         const float half = distance * std::tan(0.5f * angle);
@@ -77,15 +77,15 @@ View view(const Camera& wanted, float aspect, const Extent& things) {
                                    depth + things.radius);
         return {parallel * to_eye, vec4(-forward, 0), up};
     }
-    // With the eye among the things, or past them, some depth must still lie before it.
+    // Also where the eye is among the things or past them, the view frustum must have some depth.
     const float far = std::max(depth + things.radius, 1e-2f * things.radius);
     const float near = std::max(depth - things.radius, 1e-3f * far);
     return {glm::perspective(angle, aspect, near, far) * to_eye, vec4(camera.eye, 1), up};
 }
 
-mat4 along(vec3 direction, const Extent& things) {
+mat4 light_projection(vec3 direction, const Extent& things) {
     const float r = things.radius;
-    return glm::ortho(-r, r, -r, r, -r, r) * from(things.centre, axes(direction, vec3(0, 1, 0)));
+    return glm::ortho(-r, r, -r, r, -r, r) * view_matrix(things.centre, axes(direction, vec3(0, 1, 0)));
 }
 
 mat4 to_texture(const mat4& to_clip) {

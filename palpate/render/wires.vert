@@ -1,14 +1,15 @@
 #version 450 core
-// A line as a strip of two triangles, so that it is `width` pixels wide on every driver.
+// A line of a wireframe, drawn as a strip of two triangles so that it is `width` pixels wide on every driver.
 
 layout(std430, binding = 0) readonly buffer Points { float points[]; };
 layout(std430, binding = 1) readonly buffer Lines { uint lines[]; };
 
 uniform mat4 to_clip;
 uniform vec4 eye;      // see View
-uniform float lift;    // m; how far before its place to draw a line, so that it is seen on a surface
-uniform vec3 middle;   // m; of all things
-uniform float radius;  // m; of all things
+uniform float lift;    // m; how far towards the eye a line is moved, so that the surface on which it lies does not
+                       // hide it
+uniform vec3 middle;   // m; the centre of the bounding sphere of all things,
+uniform float radius;  // m; and its radius
 uniform vec2 picture;  // pixels
 uniform float width;   // pixels
 

@@ -30,12 +30,11 @@ Solver::MakeMachine machine_for(Backend backend, [[maybe_unused]] const gl::Cont
                 return make_gpu(body, simulation, context);
             };
 #else
-            throw Error("this build of Palpate is without its part opengl",
-                        fmt::format("the backend {}", name_of(backend)),
-                        "use the backend cpu, or build with -D PALPATE_PARTS=all");
+            throw missing_part("opengl", fmt::format("the backend {}", name_of(backend)),
+                               "use the backend cpu");
 #endif
     }
-    throw Error("a backend that there is not", "the simulation", "choose one of " + all_names<Backend>());
+    throw Error("an unknown backend", "the simulation", "choose one of " + all_names<Backend>());
 }
 
 // What acts on a body during a call as it is seen from the origin, with memory of its own.

@@ -44,13 +44,12 @@ TEST(Isolated, ACrashAHangAndGreedEndOnlyTheCopy) {
                           volatile bool ends = false;
                           while (!ends) {}
                       }),
-              "the library is not done after 0.1 s with what is in a file; convert it with another program");
-    EXPECT_EQ(
-        refusal({.idle = 0.1},
-                [](std::FILE*) {
-                    for (;;) pause();
-                }),
-        "the library has stood still for 0.1 s over what is in a file; convert it with another program");
+              "the library took more than 0.1 s for what is in a file; convert it with another program");
+    EXPECT_EQ(refusal({.idle = 0.1},
+                      [](std::FILE*) {
+                          for (;;) pause();
+                      }),
+              "the library hung for 0.1 s on what is in a file; convert it with another program");
     EXPECT_EQ(refusal({.output = 1 << 20},
                       [](std::FILE* out) {
                           for (int i = 0; i < 3 << 20; ++i) std::fputc('x', out);
@@ -64,7 +63,7 @@ TEST(Isolated, ACrashAHangAndGreedEndOnlyTheCopy) {
                           std::vector<std::vector<char>> all;
                           for (;;) std::fputc(all.emplace_back(1 << 20, 'x')[7], out);
                       }),
-              "the library wants more than 64 MB for what is in a file; convert it with another program");
+              "the library needs more than 64 MB for what is in a file; convert it with another program");
 #endif
 }
 

@@ -362,7 +362,7 @@ TEST_F(Qualities, APictureOfWhatIsNotThereIsRefused) {
     refused("than its mesh has vertices", [](Picture& p) { p.surfaces[0].positions = {}; });
     refused("than its mesh has vertices",
             [](Picture& p) { p.surfaces[0].normals = p.surfaces[0].normals.first(7); });
-    refused("a point that is not there", [](Picture& p) { p.wires[0].points = p.wires[0].points.first(1); });
+    refused("a missing point", [](Picture& p) { p.wires[0].points = p.wires[0].points.first(1); });
 
     const Body body = lattice(thing_, {.spacing = 0.03f, .material = {.youngs_modulus = 1e4f, .density = 1}});
     const int hung = renderer_->add(thing_, embed(thing_, body, Mapping::interpolated));

@@ -1,4 +1,4 @@
-#include "palpate/render/openness.h"
+#include "palpate/render/ambient_occlusion.h"
 
 #include "palpate/render/view.h"
 
@@ -10,13 +10,13 @@ namespace {
 
 constexpr int lights = 64;
 constexpr int map_size = 512;
-constexpr int openness_group = 256;  // as in openness.comp
+constexpr int occlusion_group = 256;  // as in ambient_occlusion.comp
 
-const char* openness_comp =
-#include "embedded/openness.comp.h"
+const char* ambient_occlusion_comp =
+#include "embedded/ambient_occlusion.comp.h"
     ;
 
-// Evenly over the sphere, on a spiral whose turns are the golden angle apart.
+// A direction. They are spread evenly over the sphere: a Fibonacci spiral, by the golden angle.
 vec3 spread(int i) {
     const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
     const double z = 1 - (2 * i + 1.0) / lights;
@@ -33,11 +33,12 @@ std::vector<vec3> normals_of(const Mesh& mesh) {
 
 }  // namespace
 
-Openness::Openness() : map_(map_size), gather_({{GL_COMPUTE_SHADER, "openness.comp", openness_comp}}) {}
+AmbientOcclusion::AmbientOcclusion()
+    : map_(map_size), gather_({{GL_COMPUTE_SHADER, "ambient_occlusion.comp", ambient_occlusion_comp}}) {}
 
-gl::Buffer Openness::measure(const Mesh& mesh, const gl::Program& depth) const {
+gl::Buffer AmbientOcclusion::measure(const Mesh& mesh, const gl::Program& depth) const {
     const std::vector<float> none(mesh.positions.size(), 0.0f);
-    gl::Buffer openness(none);
+    gl::Buffer ambient_occlusion(none);
     const gl::Buffer positions(mesh.positions);
     const gl::Buffer normals(normals_of(mesh));
     const gl::Buffer triangles(mesh.triangles);
@@ -51,7 +52,7 @@ gl::Buffer Openness::measure(const Mesh& mesh, const gl::Program& depth) const {
     glBindVertexArray(corners.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, positions.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, normals.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, openness.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, ambient_occlusion.name());
     map_.bind();
 
     gather_.set("lift", 3 * extent.radius / map_size);
@@ -60,7 +61,7 @@ gl::Buffer Openness::measure(const Mesh& mesh, const gl::Program& depth) const {
     depth.set("size", 1.0f);
     for (int i = 0; i < lights; ++i) {
         const vec3 to_light = spread(i);
-        const mat4 to_clip = along(-to_light, extent);
+        const mat4 to_clip = light_projection(-to_light, extent);
         map_.begin();
         depth.use();
         depth.set("to_clip", to_clip);
@@ -70,11 +71,11 @@ gl::Buffer Openness::measure(const Mesh& mesh, const gl::Program& depth) const {
         gather_.use();
         gather_.set("to_shadow", to_texture(to_clip));
         gather_.set("to_light", to_light);
-        glDispatchCompute(static_cast<GLuint>((mesh.positions.size() + openness_group - 1) / openness_group),
-                          1, 1);
+        glDispatchCompute(
+            static_cast<GLuint>((mesh.positions.size() + occlusion_group - 1) / occlusion_group), 1, 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
     }
-    return openness;
+    return ambient_occlusion;
 }
 
 }  // namespace palpate

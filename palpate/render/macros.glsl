@@ -1,4 +1,4 @@
-// The words of mapping.inl and dent.inl in GLSL.
+// Macros that let GLSL compile mapping.inl and dent.inl, which it shares with C++.
 #define FN
 #define Real float
 #define Real3 vec3

@@ -1,4 +1,4 @@
-// Behind this, the words of words.glsl mean nothing again.
+// Undefines the macros of macros.glsl.
 #undef FN
 #undef Real
 #undef Real3
