@@ -198,10 +198,10 @@ Line measure(const Surfaces& subject, Renderer* renderer, double seconds, Grante
     Curve curve{subject.name, {}, {}};
     const double all = double(timing.periods.count());
     double beyond = all;
-    for (const auto& box : timing.periods.boxes()) {
-        beyond -= double(box.count);
+    for (const auto& bin : timing.periods.bins()) {
+        beyond -= double(bin.count);
         if (!(beyond > 0)) break;
-        curve.x.push_back(1e3 * box.to);
+        curve.x.push_back(1e3 * bin.to);
         curve.y.push_back(beyond / all);
     }
     periods.curves.push_back(std::move(curve));

@@ -15,9 +15,9 @@ std::span<const Driver> drivers() {
     using Settings = const DeviceSettings&;
     using Made = std::unique_ptr<Device>;
     static constexpr Driver all[] = {
-        {"hand", "a simulated person, whom forces push", DeviceNeeds::path,
+        {"hand", "a simulated person, who yields to forces", DeviceNeeds::path,
          [](Settings of) -> Made { return std::make_unique<VirtualHand>(of.path, of.hand); }},
-        {"script", "a path, whatever pushes", DeviceNeeds::path,
+        {"script", "a path, whatever forces act", DeviceNeeds::path,
          [](Settings of) -> Made { return std::make_unique<Script>(of.path); }},
         {"mouse", "a pointer in a picture", DeviceNeeds::pointer,
          [](Settings of) -> Made { return std::make_unique<Mouse>(of.mouse, of.replay); }},

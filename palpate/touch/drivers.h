@@ -11,37 +11,37 @@
 
 namespace palpate {
 
-/// What devices are made of; each takes its own.
+/// The settings of all devices; each takes what it needs.
 struct DeviceSettings {
-    Path path{};  // that a hand pulls itself along, or a script follows
+    Path path{};  // that a simulated hand or a script follows
     VirtualHandSettings hand{};
     MouseSettings mouse{};
-    std::vector<PointerEvent> replay{};  // of a mouse
-    std::filesystem::path log{};         // that is played back
+    std::vector<PointerEvent> replay{};  // events for a mouse
+    std::filesystem::path log{};         // to play back
 };
 
-/// What whoever chooses a device by its name has to bring.
+/// What a device needs from those who choose it by name.
 enum class DeviceNeeds {
-    pointer,  // a window that tells it of one
+    pointer,  // a window that passes on pointer events
     path,     // DeviceSettings::path
     log,      // DeviceSettings::log
 };
 
-/// A kind of device that comes with Palpate. What a program brings itself needs none of this: it gives a
-/// Touch its Device.
+/// A kind of device that comes with Palpate. A program's own device needs no entry here: the program hands it
+/// to a Touch.
 struct Driver {
     std::string_view name, about;
     DeviceNeeds needs;
-    /// Still to be opened. Throws Error, as where a log cannot be read.
+    /// Makes a device, not yet open. Throws Error, for example if a log cannot be read.
     std::unique_ptr<Device> (*make)(const DeviceSettings& settings);
 };
 
 std::span<const Driver> drivers();
 
-/// The one of that name. Throws Error that lists the names where there is none.
+/// The driver of that name. If there is none, throws an Error that lists the names.
 const Driver& driver(std::string_view name);
 
-/// The names of those that need such a thing, or of all, for a message: "a, b, c".
+/// The names of all drivers, or of those with that need, for a message: "a, b, c".
 std::string names_of_drivers(std::optional<DeviceNeeds> needs = {});
 
 }  // namespace palpate

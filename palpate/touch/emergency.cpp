@@ -13,11 +13,11 @@
 namespace palpate {
 namespace {
 
-constexpr int longest_tick = 20;  // ms, that ticks under way are waited for, all together
+constexpr int longest_tick = 20;  // ms, how long to wait for ticks under way, in all
 
-// A handler of signals finds them only at places that do not move.
+// Data of a signal handler, so at fixed places.
 std::array<std::atomic<Touch*>, 256> touches{};
-std::atomic<int> visitors = 0;  // threads that may use one of them just now
+std::atomic<int> visitors = 0;  // how many threads may be using one of them
 
 template <class Act>
 void for_each_touch(const Act& act) {
@@ -30,7 +30,7 @@ void for_each_touch(const Act& act) {
 void let_go_of_all() noexcept {
     ++visitors;
     for_each_touch([](Touch& touch) { touch.let_go(); });
-    // A tick that was under way may have written after that what it had computed before.
+    // A tick under way may have written a force afterwards.
     int ms = 0;
     for_each_touch([&](Touch& touch) {
         for (; ms < longest_tick && touch.is_ticking(); ++ms) poll(nullptr, 0, 1);
@@ -46,7 +46,7 @@ void let_go_at_halt() {
 void add_touch(Touch& touch) {
     for (auto& place : touches)
         if (Touch* nobody = nullptr; place.compare_exchange_strong(nobody, &touch)) return;
-    throw Error("too many devices at once", touch.device().name, "end some that are not needed any more");
+    throw Error("too many devices at once", touch.device().name, "close some of them");
 }
 
 void remove_touch(Touch& touch) noexcept {

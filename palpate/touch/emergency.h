@@ -4,21 +4,21 @@ namespace palpate {
 
 class Touch;
 
-/// From now on no device of this process goes on pushing when it ends, crashes or is paused: all hands are
-/// let go of before (base/halt.h says when that is, and what it can do nothing about). A library does not
-/// take signals unasked, so this is for whoever owns the process: the command and the viewer call it; call it
-/// once in a program of yours, after your own handlers of signals are installed, which are called as before.
+/// From now on all devices of this process are stopped when it ends, crashes or is paused (base/halt.h says
+/// exactly when). A library should not install signal handlers unasked, so this is for the program: the
+/// command and the viewer call it. Call it once in your own program, after installing your own signal
+/// handlers, which are still called.
 void let_go_at_halt();
 
-/// Lets go of all hands of this process, and returns when no tick that was under way can push any more, or
-/// after 20 ms. For handlers of signals of your own: it is async-signal-safe, as Device::stop() is.
+/// Stops all devices of this process, and returns when no tick under way can push any more, or after 20 ms.
+/// For your own signal handlers: it is async-signal-safe, as Device::stop() is.
 void let_go_of_all() noexcept;
 
 // ---- for Touch ----
 
-/// Throws Error if there are more hands than any desk has.
+/// Throws Error if there are too many.
 void add_touch(Touch& touch);
-/// When this returns, nobody holds on to it.
+/// When this returns, nothing uses the touch any more.
 void remove_touch(Touch& touch) noexcept;
 
 }  // namespace palpate

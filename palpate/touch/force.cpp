@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-// Along a normal on the side that is touched.
+// The normal of the dented surface, on the side that is touched.
 double lasting_depth(std::span<const Dent> lasting, const Contact& contact, dvec3 normal) {
     const double side = contact.behind ? -1 : 1;
     return std::max(side * double(depth_at(lasting, vec3(contact.point), vec3(side * normal))), 0.0);
@@ -28,7 +28,7 @@ dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel
     const double depth = glm::length(sunk);
     if (!(depth > 0)) return dvec3(0);
     if (std::size_t(most->surface) >= feels.size())
-        throw Error("fewer feels than the patch has surfaces", "the force of a proxy", "give one for each");
+        throw Error("fewer Feels than the patch has surfaces", "the force of a proxy", "give one for each");
     const Feel& feel = feels[std::size_t(most->surface)];
     const dvec3 normal = sunk / depth;
 

@@ -15,16 +15,16 @@ namespace {
 constexpr std::string_view version = "# palpate log ";
 constexpr std::string_view device = "# device ";
 constexpr std::string_view rate = "# rate ";
-// Of version 2; and of version 1, which knew no turns.
+// The columns of version 2; and of version 1, which had no orientations.
 constexpr std::string_view columns = "now,time,x,y,z,qw,qx,qy,qz,buttons,placed,fx,fy,fz,tx,ty,tz";
 constexpr std::string_view columns_without_turns = "now,time,x,y,z,buttons,placed,fx,fy,fz";
 
-// Takes a text apart line by line, and a line number by number.
+// Parses a text line by line, and a line number by number.
 class LogLines {
  public:
     LogLines(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
 
-    // False if there is no more.
+    // False at the end.
     bool next() {
         if (rest_.empty()) return false;
         ++number_;
@@ -37,12 +37,12 @@ class LogLines {
 
     bool blank() const { return line_.find_first_not_of(" \t") == line_.npos; }
 
-    // The next line, which has to be this.
+    // Reads the next line, which must be `text`.
     void exactly(std::string_view text) {
         if (!heading(text).empty()) fail(fmt::format("is not \"{}\"", text));
     }
 
-    // The rest of the next line, which has to begin so.
+    // The rest of the next line, which must begin like this.
     std::string_view heading(std::string_view begin) {
         if (!next()) ++number_, line_ = {};
         if (!line_.starts_with(begin)) fail(fmt::format("is not \"{}\"", begin));
@@ -50,7 +50,7 @@ class LogLines {
         return line_;
     }
 
-    // Numbers to the end of the line, with commas between.
+    // Numbers separated by commas, up to the end of the line.
     template <class... Number>
     void numbers(Number&... values) {
         std::size_t left = sizeof...(values);
@@ -58,7 +58,7 @@ class LogLines {
         if (!all)
             fail(sizeof...(values) == 1
                      ? "is not a number"
-                     : fmt::format("is not {} numbers with commas between", sizeof...(values)));
+                     : fmt::format("is not {} numbers separated by commas", sizeof...(values)));
     }
 
     [[noreturn]] void fail(const std::string& what) const {
@@ -67,7 +67,7 @@ class LogLines {
     }
 
  private:
-    // False if there is none, or something else behind it than a comma or, after the last, the line's end.
+    // False if there is none, or if it is not followed by a comma or, after the last, by the end of the line.
     template <class Number>
     bool number(Number& value, bool last) {
         const char* const end = line_.data() + line_.size();
@@ -111,7 +111,7 @@ Tick numbers(LogLines& lines) {
     return t;
 }
 
-// Places were single then.
+// Positions were in single precision then.
 Tick numbers_without_turns(LogLines& lines) {
     Tick t;
     vec3 place, &force = t.wrench.force;
@@ -137,7 +137,8 @@ Log parse_log(std::string_view text, const std::string& name) {
     while (lines.next()) {
         if (lines.blank()) continue;
         const Tick t = turns ? numbers(lines) : numbers_without_turns(lines);
-        if (!std::isfinite(t.now) || !std::isfinite(t.state.time)) lines.fail("has a time that is no number");
+        if (!std::isfinite(t.now) || !std::isfinite(t.state.time))
+            lines.fail("has a time that is not a number");
         if (!log.ticks.empty() && t.now < log.ticks.back().now) lines.fail("goes back in time");
         log.ticks.push_back(t);
     }

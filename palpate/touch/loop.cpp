@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 constexpr double slowest = 250, fastest = 4000;  // Hz
-constexpr double longest_spin = 0.001;           // s: more would leave nothing of a processor to others
+constexpr double longest_spin = 0.001;           // s: more would keep others off the processor
 
 }  // namespace
 
@@ -28,10 +28,10 @@ TouchLoop::TouchLoop(std::vector<Touch*> touches, LoopSettings settings)
     if (!paced_)
         for (Touch* touch : touches_) touch->expect_rate(settings.rate);
     loop_ = std::thread([this] { run(); });
-    started_.wait(false);  // so that granted() has an answer
+    started_.wait(false);  // so that granted() is known
 }
 
-// The watchdog goes on until the loop has ended, which may hang in a device on its way out.
+// The watchdog runs until the loop has ended, which may hang in a device at its end.
 TouchLoop::~TouchLoop() {
     ends_.store(true, std::memory_order_release);
     for (Touch* touch : touches_) touch->let_go();
@@ -49,7 +49,7 @@ void TouchLoop::run() {
     std::optional<double> last;
     bool answered = false;
     while (!ends_.load(std::memory_order_acquire)) {
-        const bool follows = paced_ && answered;  // a device that is gone does not pace
+        const bool follows = paced_ && answered;  // a device that is gone does not pace the loop
         if (!follows) wait_for(deadlines.next());
         const double start = now();
         if (last) timing_.periods.add(start - *last);

@@ -11,25 +11,25 @@
 namespace palpate {
 
 struct LoopSettings {
-    double rate = 1000;    // Hz, from 250 to 4000; a device that paces has its own
-    double spin = 100e-6;  // s: the last part of each wait, during which it does not sleep; up to 1 ms
+    double rate = 1000;    // Hz, from 250 to 4000; a device that paces the loop has its own
+    double spin = 100e-6;  // s: the last part of each wait, in which it spins instead of sleeping; up to 1 ms
 };
 
-/// How a loop has kept time.
+/// The timing of a loop.
 struct LoopTiming {
-    Durations periods;                           // from tick to tick, s of the clock
-    Durations work;                              // of a tick, s of the processor's time on this thread
+    Durations periods;                           // from tick to tick, s of wall-clock time
+    Durations work;                              // of a tick, s of processor time of this thread
     Durations proxy;                             // of the proxy alone, likewise; one for each touch
-    std::atomic<std::uint64_t> missed = 0;       // ticks that were left out because their time had gone by
-    std::atomic<std::uint64_t> longest_run = 0;  // of those, one after the other
+    std::atomic<std::uint64_t> missed = 0;       // ticks that were skipped because they were overdue
+    std::atomic<std::uint64_t> longest_run = 0;  // the most of those in a row
 };
 
-/// Ticks touches on a thread of its own, a thousand times a second by absolute deadlines, with whatever
-/// priority the system grants; a Watchdog lets go of them if it gets stuck. Both end with this object, and
-/// the devices are stopped. The touches must outlive it.
+/// The servo loop: ticks touches on a thread of its own, a thousand times a second by absolute deadlines,
+/// with real-time priority if the system grants it. A Watchdog stops their devices if it stalls. When this
+/// object ends, both threads end and the devices are stopped. The touches must outlive it.
 class TouchLoop {
  public:
-    /// Throws Error if the rate or the spin is out of bounds, or if one of the touches is not there.
+    /// Throws Error if the rate or the spin is out of range, or if one of the touches is null.
     explicit TouchLoop(std::vector<Touch*> touches, LoopSettings settings = {});
     ~TouchLoop();
     TouchLoop(const TouchLoop&) = delete;
@@ -37,12 +37,12 @@ class TouchLoop {
 
     const LoopTiming& timing() const { return timing_; }
 
-    /// What the system granted to the thread.
+    /// The priority that the system granted to the thread.
     Granted granted() const;
 
     double rate() const { return settings_.rate; }
 
-    /// How often the watchdog had to act.
+    /// How often the watchdog has intervened.
     std::uint64_t times_stalled() const { return watchdog_.times_stalled(); }
 
  private:
@@ -56,7 +56,7 @@ class TouchLoop {
     LoopTiming timing_;
     Granted granted_;
     std::atomic<bool> started_ = false, ends_ = false;
-    Watchdog watchdog_;  // before there is anything to watch, and after
+    Watchdog watchdog_;  // declared before the thread, so that it also outlives it
     std::thread loop_;
 };
 

@@ -7,18 +7,18 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t most_marks = most_dents - 3;  // the others are for what is under the tip
+constexpr std::size_t most_marks = most_dents - 3;  // the others are for the contacts under the tip
 
 Dent dent_of(const Contact& contact, double depth, const Feel& feel) {
     return {vec3(contact.point), float(contact.behind ? -depth : depth), float(feel.dent_width),
             vec3(contact.front())};
 }
 
-// How deep a single press makes a surface.
+// The greatest depth of a dent from a single press.
 double deepest_press(const Feel& feel) { return 2.0 / 3 * deepest_dent(feel.dent_width); }
 
-// How much deeper one more dent can make it there. What it adds at the places of others counts the less the
-// farther they are, or the first press would use up all that a stroke may add beside it.
+// How much depth one more dent may add there. What it adds at the centres of others counts less with
+// distance, or the first press would use up what a stroke may add beside it.
 double room_for_dent(std::span<const Dent> lasting, const Contact& contact, const Feel& feel) {
     double room = deepest_press(feel) - lasting_depth(lasting, contact);
     const Dent one[] = {dent_of(contact, 1, feel)};
@@ -70,13 +70,13 @@ void Marks::leave(const Contact& contact, const Feel& feel, int stroke) {
     auto& marks = marks_[std::size_t(contact.surface)];
     auto& dents = dents_[std::size_t(contact.surface)];
     const double wanted = contact.depth - feel.yield - lasting_depth(dents, contact);
-    const double least = 1e-4 * feel.dent_width;  // less waits until it is more
+    const double least = 1e-4 * feel.dent_width;  // less is added later, once it is more
     if (!(wanted > least)) return;
     const double more = std::min(wanted, room_for_dent(dents, contact, feel));
     if (!(more > least)) return;
     const Dent dent = dent_of(contact, more, feel);
-    // Near enough to one of the same stroke that counts here in full, that one grows; else there is a new
-    // one, as long as there is room.
+    // A dent of the same stroke that is near enough to count in full grows; otherwise there is a new one, if
+    // there is room.
     std::size_t nearest = dents.size();
     float closest = 0.25f * dent.width;
     for (std::size_t m = 0; m < dents.size(); ++m) {

@@ -9,11 +9,11 @@
 namespace palpate {
 namespace {
 
-constexpr double skin =
-    1e-7;  // m: so far the ball stays off what it touches, so that rounding never takes it in
-constexpr double still = 1e-7;             // m: less is no motion
-constexpr std::size_t most_touching = 12;  // with normals of their own
-constexpr int most_moves = 12;             // in one call; what is left of the way is for the next
+constexpr double clearance =
+    1e-7;  // m: the gap that the ball keeps to what it touches, so that rounding never makes it penetrate
+constexpr double still = 1e-7;             // m: a shorter way is no motion
+constexpr std::size_t most_touching = 12;  // contacts with different normals
+constexpr int most_moves = 12;             // in one call; the rest of the way is left to the next
 
 // The nearest point of a face, as seen from the ball's centre.
 struct Nearest {
@@ -39,17 +39,17 @@ Nearest nearest(const Patch::Face& face, dvec3 centre) {
     return found;
 }
 
-// A face, the plane that it lies in and a disc in that which holds it: they tell most faces apart from what
-// matters.
-struct Flat {
+// A face with its plane and its bounding disc in that plane, for the broad phase: they rule out most faces
+// quickly.
+struct BoundedFace {
     Patch::Face face;
-    dvec3 up;  // unit; nothing where the face has no area, so that everything is at its height
+    dvec3 up;  // unit; zero if the face is degenerate, so that every point is at its height
     double level;
     dvec3 middle;
     double size;  // m, from there to the farthest corner
 
-    Flat() = default;
-    explicit Flat(const Patch::Face& f) : face(f), up(front(f)) {
+    BoundedFace() = default;
+    explicit BoundedFace(const Patch::Face& f) : face(f), up(front(f)) {
         const auto& [a, b, c] = face.corners;
         const double square = glm::dot(up, up);
         up *= square > 0 ? 1 / std::sqrt(square) : 0;
@@ -60,7 +60,7 @@ struct Flat {
 
     double height(dvec3 point) const { return glm::dot(up, point) - level; }  // m
 
-    // Whether a ball that is not above or below the disc by more than its radius can touch that.
+    // Whether a ball at that height over the plane can touch the disc.
     bool may_touch(dvec3 centre, double high, double radius) const {
         const dvec3 off = centre - middle;
         const double aside = glm::dot(off, off) - high * high;
@@ -69,17 +69,17 @@ struct Flat {
     }
 };
 
-// Whether a face can be what stops a ball of radius `off` that begins to move at the first height and ends at
-// the other. Only a sheet stops what comes from behind: a solid's far side is behind too, and what has got
-// into a solid by mistake shall find its way out.
-bool may_stop(const Flat& flat, double begin, double end, double off) {
+// Whether a face can stop a ball of radius `off` that moves from one height over its plane to another. From
+// behind, only a sheet stops it (back faces of a solid do not): so a ball that got into a solid by mistake
+// finds its way out.
+bool may_stop(const BoundedFace& flat, double begin, double end, double off) {
     if (begin >= 0) return std::min(begin, end) <= off;
     return flat.face.is_sheet && std::max(begin, end) >= -off;
 }
 
-// How much of a way, up to `most`, the ball can go before it comes within `off` of a face. The distance to a
-// triangle, as to anything convex, is a convex function along a line; so Newton's steps never go beyond its
-// root.
+// The narrow phase: the time of impact as a part of the way, up to `most`, after which the ball is within
+// `off` of a face. The distance to a triangle, as to any convex set, is a convex function along a line, so
+// Newton's steps never overshoot the root (conservative advancement).
 double free_part(const Patch::Face& face, dvec3 from, dvec3 way, double off, double most) {
     const double hardly = 1e-12 * glm::length(way);
     double part = 0;
@@ -87,7 +87,7 @@ double free_part(const Patch::Face& face, dvec3 from, dvec3 way, double off, dou
         const Nearest there = nearest(face, from + part * way);
         const double closing = -glm::dot(there.normal, way), gap = there.distance - off;
         if (closing <= hardly) return most;
-        if (gap <= 0.01 * skin) return part;
+        if (gap <= 0.01 * clearance) return part;
         part += gap / closing;
         if (part >= most) return most;
     }
@@ -100,7 +100,7 @@ struct Touching {
     std::array<Contact, most_touching> list;
     std::size_t count = 0;
 
-    // Where there are too many, those stay that are most in the way of what is wanted.
+    // If there are too many, it keeps those that oppose the wanted way most.
     void add(const Contact& contact, dvec3 wanted) {
         for (std::size_t i = 0; i < count; ++i)
             if (glm::dot(list[i].normal, contact.normal) > 1 - 1e-12) return;
@@ -118,9 +118,9 @@ struct Touching {
 
 template <class Near>
 Touching touching(Near& near, dvec3 centre, double radius, dvec3 wanted) {
-    const double reach = radius + 2 * skin;
+    const double reach = radius + 2 * clearance;
     Touching found;
-    near.for_each(centre, reach, [&](const Flat& flat) {
+    near.for_each(centre, reach, [&](const BoundedFace& flat) {
         const Patch::Face& face = flat.face;
         const double high = flat.height(centre);
         if (!may_stop(flat, high, high, reach) || !flat.may_touch(centre, high, reach)) return;
@@ -134,78 +134,79 @@ Touching touching(Near& near, dvec3 centre, double radius, dvec3 wanted) {
     return found;
 }
 
-// ---- the way that planes leave ----
+// ---- sliding along contact planes ----
 
-// Of all ways that lead into none of the planes the nearest to the one that is wanted: that plus the normals
-// of at most three planes, each times its depth.
-struct Given {
+// The projection of the wanted way onto the cone of ways that enter no contact plane (non-negative least
+// squares): the wanted way plus the normals of at most three active planes, each times its depth.
+struct Projection {
     dvec3 way;
     std::array<std::size_t, 3> planes = {};
     std::array<double, 3> depths = {};
     std::size_t count = 0;
 };
 
-// With some planes to slide along; false if that is not the answer.
-bool try_planes(dvec3 wanted, const Touching& all, Given& given) {
-    auto normal = [&](std::size_t i) { return all.list[given.planes[i]].normal; };
+// Tries one set of active planes; false if it is not the solution.
+bool try_planes(dvec3 wanted, const Touching& all, Projection& found) {
+    auto normal = [&](std::size_t i) { return all.list[found.planes[i]].normal; };
     const double tiny = 1e-9 * glm::length(wanted);
-    given.way = wanted;
-    if (given.count == 1) {
-        given.depths[0] = -glm::dot(normal(0), wanted);
-    } else if (given.count > 1) {
-        // Solve for depths: the way shall lie in all of them. A missing third plane is at right angles to the
-        // others.
-        const dvec3 a = normal(0), b = normal(1), c = given.count > 2 ? normal(2) : glm::cross(a, b);
+    found.way = wanted;
+    if (found.count == 1) {
+        found.depths[0] = -glm::dot(normal(0), wanted);
+    } else if (found.count > 1) {
+        // Solves for the depths with which the way lies in all active planes. A missing third plane is at
+        // right angles to the others.
+        const dvec3 a = normal(0), b = normal(1), c = found.count > 2 ? normal(2) : glm::cross(a, b);
         const double volume = glm::dot(glm::cross(a, b), c);
         if (!(std::abs(volume) > 1e-9)) return false;
-        // wanted = -sum depth · normal + rest along c; by the reciprocal vectors.
+        // wanted = -sum depth · normal + a part along c; by the reciprocal basis.
         const dvec3 depths = -dvec3(glm::dot(wanted, glm::cross(b, c)), glm::dot(wanted, glm::cross(c, a)),
                                     glm::dot(wanted, glm::cross(a, b))) /
                              volume;
-        for (std::size_t i = 0; i < given.count; ++i) given.depths[i] = depths[int(i)];
+        for (std::size_t i = 0; i < found.count; ++i) found.depths[i] = depths[int(i)];
     }
-    for (std::size_t i = 0; i < given.count; ++i) {
-        if (given.depths[i] < -tiny) return false;
-        given.way += given.depths[i] * normal(i);
+    for (std::size_t i = 0; i < found.count; ++i) {
+        if (found.depths[i] < -tiny) return false;
+        found.way += found.depths[i] * normal(i);
     }
     for (std::size_t i = 0; i < all.count; ++i)
-        if (glm::dot(all.list[i].normal, given.way) < -tiny) return false;
+        if (glm::dot(all.list[i].normal, found.way) < -tiny) return false;
     return true;
 }
 
-Given give_way(dvec3 wanted, const Touching& all) {
-    Given given{wanted};
-    if (try_planes(wanted, all, given)) return given;
+Projection project(dvec3 wanted, const Touching& all) {
+    Projection found{wanted};
+    if (try_planes(wanted, all, found)) return found;
     const std::size_t n = all.count;
-    given.count = 1;
+    found.count = 1;
     for (std::size_t i = 0; i < n; ++i) {
-        given.planes = {i};
-        if (try_planes(wanted, all, given)) return given;
+        found.planes = {i};
+        if (try_planes(wanted, all, found)) return found;
     }
-    given.count = 2;
+    found.count = 2;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j) {
-            given.planes = {i, j};
-            if (try_planes(wanted, all, given)) return given;
+            found.planes = {i, j};
+            if (try_planes(wanted, all, found)) return found;
         }
-    given.count = 3;
+    found.count = 3;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j)
             for (std::size_t k = j + 1; k < n; ++k) {
-                given.planes = {i, j, k};
-                if (try_planes(wanted, all, given)) return given;
+                found.planes = {i, j, k};
+                if (try_planes(wanted, all, found)) return found;
             }
-    // Planes so nearly alike that rounding decides: it stays, against the one that is most in the way.
-    given = {dvec3(0), {}, {}, 1};
+    // The planes are so nearly parallel that rounding decides: the ball stays, stopped by the plane that
+    // opposes it most.
+    found = {dvec3(0), {}, {}, 1};
     for (std::size_t i = 0; i < n; ++i)
-        if (const double depth = -glm::dot(all.list[i].normal, wanted); depth > given.depths[0]) {
-            given.planes[0] = i;
-            given.depths[0] = depth;
+        if (const double depth = -glm::dot(all.list[i].normal, wanted); depth > found.depths[0]) {
+            found.planes[0] = i;
+            found.depths[0] = depth;
         }
-    return given;
+    return found;
 }
 
-// How much of a way can be gone before it leaves a ball. From outside, only a way that leads in.
+// The part of a way that lies within a ball, from its start; none if it starts outside and does not lead in.
 double part_within(dvec3 from, dvec3 way, dvec3 centre, double radius) {
     if (std::isinf(radius)) return 1;
     const dvec3 off = from - centre;
@@ -217,8 +218,7 @@ double part_within(dvec3 from, dvec3 way, dvec3 centre, double radius) {
 
 }  // namespace
 
-// The faces about the ball as they lie in this tick. They are fetched once and not for each question, of
-// which there are many about nearly the same place.
+// A cache of the faces near the ball at this tick, since there are many queries about nearly the same place.
 class Proxy::Near {
  public:
     Near(const Patch& patch, double time) : patch_(patch), time_(time) {}
@@ -230,12 +230,12 @@ class Proxy::Near {
         if (!holds(point, reach) && !too_many_) fetch(point, reach + beyond);
         if (!holds(point, reach))
             return patch_.for_each_near(point, reach, time_,
-                                        [&](const Patch::Face& face) { act(Flat(face)); });
+                                        [&](const Patch::Face& face) { act(BoundedFace(face)); });
         for (std::size_t i = 0; i < count_; ++i) act(faces_[i]);
     }
 
  private:
-    static constexpr double beyond = 5e-4;  // m: so far the ball mostly goes in a tick
+    static constexpr double beyond = 5e-4;  // m: how far the ball usually moves in a tick
     static constexpr std::size_t room = 128;
 
     bool holds(dvec3 point, double reach) const { return glm::distance(point, centre_) + reach <= reach_; }
@@ -246,7 +246,7 @@ class Proxy::Near {
         count_ = 0;
         patch_.for_each_near(point, reach, time_, [&](const Patch::Face& face) {
             if (count_ < room)
-                faces_[count_++] = Flat(face);
+                faces_[count_++] = BoundedFace(face);
             else
                 too_many_ = true;
         });
@@ -256,10 +256,10 @@ class Proxy::Near {
     const Patch& patch_;
     const double time_;
     dvec3 centre_ = dvec3(0);
-    double reach_ = -1;      // m; nothing is held
-    bool too_many_ = false;  // so that it is asked directly
+    double reach_ = -1;      // m; below 0 the cache is empty
+    bool too_many_ = false;  // then queries go to the patch directly
     std::size_t count_ = 0;
-    std::array<Flat, room> faces_;
+    std::array<BoundedFace, room> faces_;
 };
 
 void Proxy::put(dvec3 place) {
@@ -283,15 +283,15 @@ double Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<cons
     const double explained = patch.fastest() * std::clamp(time - time_, 0.0, Patch::longest_guess);
     Near near(patch, time);
     if (touched) move_with_surface(patch, time, explained);
-    leave_what_came_over_it(near);
+    leave_penetration(near);
     const double pushed = std::max(glm::distance(before, place_) - explained, 0.0);
-    if (touched) go_back_down(near);
+    if (touched) follow_receding_surface(near);
     time_ = time;
 
     dvec3 goal = hand;
-    const dvec3 along = given_way(near, hand);
+    const dvec3 along = constrained_way(near, hand);
     if (touched && count_ > 0) {
-        // A spring along the surface, no stronger than friction allows, holds it back.
+        // Coulomb friction: a spring along the surface holds it back, up to the friction limit.
         dvec3 sunk(0);
         for (const Contact& contact : contacts()) sunk += contact.depth * contact.normal;
         const auto surface = std::size_t(deepest()->surface);
@@ -305,12 +305,13 @@ double Proxy::follow(const Patch& patch, double time, dvec3 hand, std::span<cons
         slips_ = true;
     }
     approach(near, goal);
-    given_way(near, hand);
+    constrained_way(near, hand);
     return pushed;
 }
 
-// Where the surface carries what it is touched at. A triangle that is no longer in the patch has gone on
-// evenly; one that has gone farther than surfaces go is another by the same number.
+// Moves the ball along with the point of the surface that it touches. A triangle that is no longer in the
+// patch is taken to have moved on evenly; one that has moved farther than surfaces do is another one of the
+// same number.
 void Proxy::move_with_surface(const Patch& patch, double time, double explained) {
     const Contact& held = *deepest();
     const auto face = patch.find(held.surface, held.triangle, time);
@@ -320,19 +321,19 @@ void Proxy::move_with_surface(const Patch& patch, double time, double explained)
     if (glm::distance(now, held.point) <= explained + radius_) place_ += now - held.point;
 }
 
-// A surface that has sunk away under it has not let go of it.
-void Proxy::go_back_down(Near& near) {
+// A contact is kept when the surface recedes.
+void Proxy::follow_receding_surface(Near& near) {
     if (touching(near, place_, radius_, dvec3(0)).count > 0) return;
     dvec3 sunk(0);
     for (const Contact& contact : contacts()) sunk += contact.depth * contact.normal;
     go(near, -sunk);
 }
 
-void Proxy::leave_what_came_over_it(Near& near) {
+void Proxy::leave_penetration(Near& near) {
     for (int i = 0; i < most_moves; ++i) {
         double least = radius_;
         dvec3 out(0);
-        near.for_each(place_, radius_, [&](const Flat& flat) {
+        near.for_each(place_, radius_, [&](const BoundedFace& flat) {
             const double high = flat.height(place_);
             if (!may_stop(flat, high, high, radius_) || !flat.may_touch(place_, high, radius_)) return;
             const Nearest at = nearest(flat.face, place_);
@@ -341,45 +342,46 @@ void Proxy::leave_what_came_over_it(Near& near) {
             out = at.normal;
         });
         if (least >= radius_) return;
-        place_ += (radius_ + skin - least) * out;
+        place_ += (radius_ + clearance - least) * out;
     }
 }
 
-// The way towards a goal that the surfaces leave, from where it is; and what they are.
-dvec3 Proxy::given_way(Near& near, dvec3 goal) {
+// The way towards a goal that the contacts allow; and sets the contacts.
+dvec3 Proxy::constrained_way(Near& near, dvec3 goal) {
     const Touching all = touching(near, place_, radius_, goal - place_);
-    const Given given = give_way(goal - place_, all);
+    const Projection found = project(goal - place_, all);
     count_ = 0;
-    for (std::size_t i = 0; i < given.count; ++i) {
-        if (!(given.depths[i] > 0)) continue;
-        contacts_[count_] = all.list[given.planes[i]];
-        contacts_[count_++].depth = given.depths[i];
+    for (std::size_t i = 0; i < found.count; ++i) {
+        if (!(found.depths[i] > 0)) continue;
+        contacts_[count_] = all.list[found.planes[i]];
+        contacts_[count_++].depth = found.depths[i];
     }
-    return given.way;
+    return found.way;
 }
 
 void Proxy::approach(Near& near, dvec3 goal) {
     for (int i = 0; i < most_moves; ++i) {
-        const dvec3 way = given_way(near, goal);
+        const dvec3 way = constrained_way(near, goal);
         if (!(glm::length(way) > still)) return;
         go(near, way);
     }
 }
 
-// Along a way, up to the first thing on it. A long one in pieces, beside which there is little to look at.
+// Moves along a way to the first obstacle: continuous collision detection. A long way is divided, so that
+// each piece has few faces near it.
 void Proxy::go(Near& near, dvec3 way) {
-    way *= part_within(place_, way, near.patch().centre(), near.patch().radius() - radius_ - skin);
+    way *= part_within(place_, way, near.patch().centre(), near.patch().radius() - radius_ - clearance);
     const double length = glm::length(way);
     if (!(length > 0)) return;
-    const double longest = std::max(radius_, 0.001), off = radius_ + skin;
-    constexpr double most_pieces = 64;  // what is farther is for the next tick
+    const double longest = std::max(radius_, 0.001), off = radius_ + clearance;
+    constexpr double most_pieces = 64;  // the rest is left to the next tick
     const double pieces = std::min(std::ceil(length / longest), most_pieces);
     way *= std::min(longest / length, 1 / pieces);
     for (int i = 0; i < int(pieces); ++i) {
         double part = 1;
         const dvec3 middle = place_ + 0.5 * way;
         const double reach = 0.5 * glm::length(way) + off;
-        near.for_each(middle, reach, [&](const Flat& flat) {
+        near.for_each(middle, reach, [&](const BoundedFace& flat) {
             if (flat.may_touch(middle, flat.height(middle), reach) &&
                 may_stop(flat, flat.height(place_), flat.height(place_ + part * way), off))
                 part = std::min(part, free_part(flat.face, place_, way, off, part));

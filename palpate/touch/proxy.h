@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Where the proxy is stopped.
+/// A contact that stops the proxy.
 struct Contact {
     dvec3 point;     // m, on the surface
     dvec3 normal;    // unit, from there to the proxy's centre
@@ -16,30 +16,30 @@ struct Contact {
     int surface;     // the number of its Touchable,
     int triangle;    // which of its triangles,
     dvec3 weights;   // and where in that: barycentric
-    double depth;  // m, how far the hand is behind the surface along the normal; the depths times the normals
-                   // are what leads from the hand to where the proxy would be without friction
-    bool behind = false;  // of a sheet: whether it is touched from its other side
+    double depth;    // m, the penetration of the hand along the normal; the sum of depth · normal leads from
+                     // the hand to where the proxy would be without friction
+    bool behind = false;  // for a sheet: whether it is touched from its back
 
-    /// The side that its triangles look to.
+    /// The normal on the front of its triangles.
     dvec3 front() const { return behind ? -normal : normal; }
 };
 
-/// A ball that follows the hand but never enters a surface (the god-object of Zilles and Salisbury 1995, the
-/// size of Ruspini, Kolarov and Khatib 1997): what the hand has sunk in, a virtual coupling pushes back, a
-/// spring between the two. Between two calls the ball rolls along at most three surfaces at once, by exact
-/// distances, so that neither speed nor a sharp edge takes it through. Allocates nothing.
+/// The proxy: a ball that follows the hand but never enters a surface (the god-object of Zilles and Salisbury
+/// 1995, with a size as in Ruspini, Kolarov and Khatib 1997). "Hand" here means its position, that of the
+/// device's tip: the haptic interface point. A virtual coupling between the two, a spring, pushes the hand
+/// back out. Between two calls the ball slides along up to three surfaces at once, with continuous collision
+/// detection by exact distances, so that it passes through nothing, however fast it moves. Allocates nothing.
 class Proxy {
  public:
     explicit Proxy(double radius) : radius_(radius) {}
 
-    /// Anew, at a place that is held to be free; it touches nothing.
+    /// Puts it at a place, which should be free; it touches nothing.
     void put(dvec3 place);
 
-    /// Goes as near to the hand as the patch allows, whose surfaces have moved on to `time` (s). `friction`:
-    /// one for each surface of the patch; throws Error if they are fewer. Beyond what the patch knows it does
-    /// not go.
-    /// Returns how far surfaces have pushed or carried it, in m, beyond what their speeds explain: 0, unless
-    /// a surface appeared or jumped.
+    /// Moves it as near to the hand as the surfaces of the patch allow, which have moved on to `time` (s),
+    /// and not beyond the patch. `friction`: one for each surface of the patch; throws Error if there are
+    /// fewer. Returns how far surfaces have pushed or carried it, in m, beyond what their speeds explain: 0,
+    /// unless a surface appeared or jumped.
     double follow(const Patch& patch, double time, dvec3 hand, std::span<const Friction> friction);
 
     dvec3 position() const { return place_; }  // m, of its centre
@@ -47,20 +47,20 @@ class Proxy {
     void set_radius(double radius) { radius_ = radius; }  // m; from the next call on
     bool slips() const { return slips_; }
 
-    /// Where it is stopped, with planes that are not redundant; none if it is where the hand is.
+    /// The contacts that stop it, none of them redundant; none if it is where the hand is.
     std::span<const Contact> contacts() const { return {contacts_.data(), count_}; }
 
-    /// The one where the hand is deepest; null if there is none.
+    /// The contact with the greatest depth; null if there is none.
     const Contact* deepest() const;
 
  private:
     class Near;
     void move_with_surface(const Patch& patch, double time, double explained);
-    void leave_what_came_over_it(Near& near);
-    void go_back_down(Near& near);
+    void leave_penetration(Near& near);
+    void follow_receding_surface(Near& near);
     void approach(Near& near, dvec3 goal);
     void go(Near& near, dvec3 way);
-    dvec3 given_way(Near& near, dvec3 goal);
+    dvec3 constrained_way(Near& near, dvec3 goal);
 
     double radius_;
     dvec3 place_ = dvec3(0);

@@ -6,28 +6,28 @@
 
 namespace palpate {
 
-/// What a hand gave to a surface.
+/// The impulse that a hand gave to a surface.
 struct Push {
     int surface = 0;           // the number of its Touchable,
     int triangle = 0;          // which of its triangles,
     dvec3 weights = dvec3(0);  // and where in that: barycentric
-    dvec3 impulse = dvec3(0);  // N·s: the opposite of what the hand was given
+    dvec3 impulse = dvec3(0);  // N·s: the reaction to the force on the hand
     double time = 0;           // s, on the loop's clock, when it ended
 };
 
-/// The pushes of a touch on their way to a simulation. One that finds no room waits and takes those that
-/// follow on its surface into it, at the newest place: late, but no momentum is lost. It allocates only when
-/// it is made, and neither side ever waits.
+/// A lock-free queue of pushes, from a haptic loop to a simulation. When it is full, pushes wait, and those
+/// on one surface are summed at the newest place: they arrive late, but no momentum is lost. Memory is
+/// allocated only in the constructor, and neither side ever waits.
 class PushQueue {
  public:
     explicit PushQueue(std::size_t surfaces) : waiting_(surfaces) {}
 
-    // The loop's:
+    // For the loop:
     void add(const Push& push) noexcept;
-    /// What waits, as far as there is room now.
+    /// Sends what waits, as far as there is room now.
     void send() noexcept;
 
-    /// The simulation's: the next, in their order on each surface; false if there is none.
+    /// For the simulation: the next push, in order for each surface; false if there is none.
     bool next(Push& push) noexcept { return ring_.take(push); }
 
  private:

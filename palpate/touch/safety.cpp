@@ -34,7 +34,7 @@ bool is_sound(const DeviceState& state) {
 
 void check(const SafetySettings& settings, const std::string& device) {
     constexpr double any = std::numeric_limits<double>::max();
-    constexpr double second = 1;  // no force goes on for longer after all else has failed
+    constexpr double second = 1;  // no force lasts longer if everything else has failed
     struct Setting {
         const char* name;
         double value;
@@ -71,7 +71,7 @@ void check(const DeviceSpec& device) {
         float value;
         bool may_be_zero = false;
     };
-    // A device that turns somebody says for how long it can.
+    // A device with a peak torque must give a continuous one, too.
     const bool turns_nobody = device.peak_torque == 0 && device.lasting_torque == 0;
     const Field all[] = {{"workspace", device.workspace},
                          {"peak_force", device.peak_force},
@@ -92,7 +92,7 @@ Safety::Safety(const DeviceSpec& device, const SafetySettings& settings, const W
     check(device);
     check(settings, device.name);
     const bool known = warmth.square >= 0 && std::isfinite(warmth.square) && std::isfinite(warmth.time);
-    if (!known) throw Error("a warmth that is no number", device.name, "give what Felt::warmth said");
+    if (!known) throw Error("a warmth that is not a number", device.name, "give what Felt::warmth said");
     set(settings);
 }
 
@@ -118,13 +118,13 @@ Wrench Safety::allow(const Wrench& wanted, const DeviceState& state, dvec3 veloc
     if (!is_finite(velocity)) velocity = dvec3(0);
     if (!is_finite(surface)) surface = dvec3(0);
     const bool sound = is_finite(wanted) && is_sound(state);
-    // The limits are the device's, so they are in its newtons and its metres.
+    // The limits are in the device's newtons and metres, not in the scene's.
     const double forces = sound ? double(state.forces) : 1;
     const double torques = sound ? forces / double(state.motion) : 1;
     double fresh = 0;
     if (sound) {
         watch(state, surface);
-        // One from the future has a clock of its own, by which it would never grow old.
+        // A sample from the future is on another clock, by which it would never be too old.
         const double age = now - state.time;
         if (age >= -settings_.fresh)
             fresh = std::clamp(1 - (age - settings_.fresh) / settings_.fade, 0.0, 1.0);
@@ -133,12 +133,12 @@ Wrench Safety::allow(const Wrench& wanted, const DeviceState& state, dvec3 veloc
         let_go(Held::not_finite);
     }
     gain_ = fresh > 0 ? grown(effort(wanted, 1, 1), now) : 0;
-    const double part = gain_ * fresh;  // 0 of what is not finite, too
+    const double part = gain_ * fresh;  // times 0, what is not finite is 0, too
     auto some_of = [part](vec3 all) { return part > 0 ? part * dvec3(all) : dvec3(0); };
-    const dvec3 force = passive(some_of(wanted.force), velocity - surface, seconds);
+    const dvec3 force = passivity_control(some_of(wanted.force), velocity - surface, seconds);
     allowed_ = {limited(force_, force, allowed_.force, forces, seconds),
                 limited(torque_, some_of(wanted.torque), allowed_.torque, torques, seconds)};
-    if (!is_finite(allowed_)) {  // numbers so large that they are none together
+    if (!is_finite(allowed_)) {  // huge numbers that overflow
         let_go(Held::not_finite);
         return none();
     }
@@ -146,9 +146,10 @@ Wrench Safety::allow(const Wrench& wanted, const DeviceState& state, dvec3 veloc
     return allowed_;
 }
 
-// No more than the peak, nor than what the motors' warmth leaves of it, and no faster there than the slew
-// rate. A motor's heat goes with the square of its force: the mean of that is held to what it can stand. From
-// four fifths of it on the peak comes down, so that force does not break off. `scale`: to the device's units.
+// Limits a force or a torque to the peak, to what the motors' warmth leaves of it, and to the slew rate.
+// Heating is proportional to the square of the force, so its mean square is limited. From four fifths of the
+// limit on, the peak is lowered gradually, so that the force does not break off. `scale`: to the device's
+// units.
 vec3 Safety::limited(const Limits& limits, dvec3 wanted, vec3 before, double scale, double seconds) const {
     const double over =
         std::clamp((warmth_.square / (force_.lasting * force_.lasting) - 0.8) / 0.2, 0.0, 1.0);
@@ -158,7 +159,7 @@ vec3 Safety::limited(const Limits& limits, dvec3 wanted, vec3 before, double sca
     return vec3(no_longer_than(peak, last + no_longer_than(peak / settings_.slew_time * seconds, change)));
 }
 
-// The force that is as much to the motors, N at the device.
+// The force that heats the motors as much as the wrench does, N at the device.
 double Safety::effort(const Wrench& wrench, double forces, double torques) const {
     const double force = glm::length(dvec3(wrench.force)) * forces;
     const double torque = glm::length(dvec3(wrench.torque)) * torques;
@@ -166,7 +167,7 @@ double Safety::effort(const Wrench& wrench, double forces, double torques) const
                             : force;
 }
 
-// By what was pushed with until now, also if that was for longer than it should have been.
+// Warms the motors by the force since the last call, also if that acted for too long.
 void Safety::warm(double now) {
     if (!std::isfinite(now)) return;
     const double seconds = std::max(now - warmth_.time, 0.0);
@@ -180,7 +181,7 @@ void Safety::let_go(Held why) {
     calm_since_ = time_;
     gain_ = 0;
     absorbed_ = 0;
-    if (why == Held::placed) none();  // it belongs to another place
+    if (why == Held::placed) none();  // the old force belongs to another place
 }
 
 Held Safety::held() const {
@@ -188,7 +189,8 @@ Held Safety::held() const {
     return gain_ < 1 ? Held::ramping : Held::no;
 }
 
-// Whether the hand went where it is, as hands go; and what the force that was written did on its way.
+// Checks that the hand has moved as a person can move it; and adds the work of the force to the passivity
+// observer.
 void Safety::watch(const DeviceState& state, dvec3 surface) {
     if (knows_place_) {
         const double seconds = std::max(state.time - before_.time, 0.0);
@@ -206,7 +208,7 @@ void Safety::watch(const DeviceState& state, dvec3 surface) {
     knows_place_ = true;
 }
 
-// From nothing, once little is wanted, to all.
+// The gain of the ramp: 0 until little force is wanted, then up to 1.
 double Safety::grown(double wanted, double now) {
     if (waits_) {
         if (wanted > settings_.small_force) {
@@ -220,10 +222,10 @@ double Safety::grown(double wanted, double now) {
     return settings_.ramp > 0 ? std::clamp((now - begun_) / settings_.ramp, 0.0, 1.0) : 1;
 }
 
-// A surface that is sampled gives out a little energy at each turn of the hand, as no real one does; on a
-// stiff one it adds up to a buzz. What has been given out beyond what was put in is taken back by a damper
-// (Hannaford and Ryu 2002). It counts from when the touch began.
-dvec3 Safety::passive(dvec3 force, dvec3 velocity, double seconds) {
+// Time-domain passivity control (Hannaford and Ryu 2002). A sampled surface generates a little energy each
+// time the hand turns back, as no real one does; on a stiff surface that adds up to a buzz. A damper
+// dissipates the energy that was generated since the touch began.
+dvec3 Safety::passivity_control(dvec3 force, dvec3 velocity, double seconds) {
     if (glm::dot(force, force) == 0) {
         absorbed_ = 0;
         return force;

@@ -12,31 +12,31 @@ constexpr double least = 1e-6;  // s
 
 void Durations::add(double seconds) noexcept {
     const double octave = seconds > least ? std::log2(seconds / least) : 0;
-    const double box = std::min(octave * boxes_an_octave, double(boxes_.size() - 1));
+    const double bin = std::min(octave * bins_per_octave, double(bins_.size() - 1));
     constexpr auto relaxed = std::memory_order_relaxed;
     auto one_more = [](auto& counter, auto by) { counter.store(counter.load(relaxed) + by, relaxed); };
-    one_more(boxes_[std::size_t(box)], 1u);
+    one_more(bins_[std::size_t(bin)], 1u);
     one_more(sum_, seconds);
     longest_.store(std::max(longest_.load(relaxed), seconds), relaxed);
     one_more(count_, std::uint64_t(1));
 }
 
-std::vector<Durations::Box> Durations::boxes() const {
-    std::vector<Box> list;
-    auto edge = [](std::size_t box) { return least * std::exp2(double(box) / boxes_an_octave); };
-    for (std::size_t i = 0; i < boxes_.size(); ++i)
-        if (const std::uint64_t inside = boxes_[i].load(std::memory_order_relaxed))
+std::vector<Durations::Bin> Durations::bins() const {
+    std::vector<Bin> list;
+    auto edge = [](std::size_t bin) { return least * std::exp2(double(bin) / bins_per_octave); };
+    for (std::size_t i = 0; i < bins_.size(); ++i)
+        if (const std::uint64_t inside = bins_[i].load(std::memory_order_relaxed))
             list.push_back({i == 0 ? 0 : edge(i), edge(i + 1), inside});
     return list;
 }
 
 double Durations::quantile(double part) const {
     std::uint64_t all = 0, below = 0;
-    const std::vector<Box> list = boxes();
-    for (const Box& box : list) all += box.count;
-    for (const Box& box : list) {
-        below += box.count;
-        if (double(below) >= part * double(all)) return std::min(box.to, longest());
+    const std::vector<Bin> list = bins();
+    for (const Bin& bin : list) all += bin.count;
+    for (const Bin& bin : list) {
+        below += bin.count;
+        if (double(below) >= part * double(all)) return std::min(bin.to, longest());
     }
     return 0;
 }

@@ -7,40 +7,42 @@
 
 namespace palpate {
 
-/// Durations, counted in boxes each a hundredth wide, from 1 µs to 67 s. One thread adds; others
-/// may ask meanwhile. Adding takes a few nanoseconds and no memory.
+/// A histogram of durations from 1 µs to 67 s, in logarithmic bins that are a hundredth wide. One thread
+/// adds; others may read meanwhile. Adding takes a few nanoseconds and allocates nothing.
 class Durations {
  public:
     void add(double seconds) noexcept;
 
-    /// So much of them is no longer than this, s; exact to a hundredth. 0 of none.
+    /// The quantile, s: this part (0 to 1) of the durations is no longer. Exact to a hundredth; 0 if there
+    /// are none.
     double quantile(double part) const;
     double mean() const;
     double longest() const { return longest_.load(std::memory_order_relaxed); }
     std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
 
-    struct Box {
+    struct Bin {
         double from, to;  // s
         std::uint64_t count;
     };
-    std::vector<Box> boxes() const;  // those that hold any
+    std::vector<Bin> bins() const;  // those that are not empty
 
  private:
-    static constexpr std::size_t boxes_an_octave = 64, octaves = 26;
+    static constexpr std::size_t bins_per_octave = 64, octaves = 26;
 
-    std::array<std::atomic<std::uint32_t>, octaves* boxes_an_octave> boxes_ = {};
+    std::array<std::atomic<std::uint32_t>, octaves* bins_per_octave> bins_ = {};
     std::atomic<std::uint64_t> count_ = 0;
     std::atomic<double> sum_ = 0, longest_ = 0;
 };
 
-/// When a loop shall go round: at even distances from its start. It does not make up what it missed.
+/// The deadlines of a periodic loop, at even distances from its start. It skips those that it missed.
 class Deadlines {
  public:
     Deadlines(double rate, double start) : period_(1 / rate), next_(start) {}
 
     double next() const { return next_; }  // s
 
-    /// After the round that was due at next(): how many rounds have gone by since. Those are left out.
+    /// To be called after the tick that was due at next(): moves on, and returns how many ticks were missed
+    /// and are skipped.
     std::uint64_t advance(double now);
 
  private:

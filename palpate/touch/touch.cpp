@@ -14,7 +14,7 @@ namespace palpate {
 namespace {
 
 constexpr int no_stroke = std::numeric_limits<int>::max();
-constexpr double usual_rate = 1000;  // Hz, for which a device's stiffest wall is given
+constexpr double usual_rate = 1000;  // Hz, the rate for which DeviceSpec::stiffness holds
 
 void check(const Feel& feel, const std::string& device) {
     struct Field {
@@ -39,8 +39,8 @@ void check(const TouchSettings& settings, const std::string& device) {
                                                   {"velocity_filter", settings.velocity_filter},
                                                   {"direction_filter", settings.direction_filter}};
     if (!(settings.radius > 0 && settings.radius < 1))
-        throw Error(fmt::format("a tip with a radius of {} m", settings.radius), device,
-                    "give it one above zero and below 1 m");
+        throw Error(fmt::format("a tip radius of {} m", settings.radius), device,
+                    "choose one above zero and below 1 m");
     for (const auto& [name, value] : all)
         if (!(value >= 0) || !std::isfinite(value))
             throw Error(fmt::format("TouchSettings::{} is {}", name, value), device,
@@ -50,7 +50,7 @@ void check(const TouchSettings& settings, const std::string& device) {
 }
 
 std::unique_ptr<Device> given(std::unique_ptr<Device> device) {
-    if (!device) throw Error("no device", "a hand", "make one before");
+    if (!device) throw Error("no device", "a hand", "make one first");
     return device;
 }
 
@@ -76,7 +76,7 @@ Touch::Touch(std::unique_ptr<Device> device, TouchSettings settings, const Warmt
       ticked_(-1),
       forget_from_(no_stroke) {
     set(std::move(settings));
-    take_wishes();
+    take_new_settings();
     device_->open();
     device_->stop();
     add_touch(*this);
@@ -91,12 +91,12 @@ void Touch::set(TouchSettings settings) {
     check(settings, spec_.name);
     if (settings.feels.size() != feels_.size())
         throw Error(fmt::format("feels for {} surfaces instead of {}", settings.feels.size(), feels_.size()),
-                    spec_.name, "begin another touch for other surfaces");
+                    spec_.name, "make a new touch for other surfaces");
     settings_ = settings;
     for (Feel& feel : settings_.feels)
         feel.stiffness = std::min(feel.stiffness, 0.5 * double(spec_.stiffness));
-    wishes_.draft() = std::move(settings);
-    wishes_.publish();
+    new_settings_.draft() = std::move(settings);
+    new_settings_.publish();
 }
 
 void Touch::forget(int from_stroke) noexcept {
@@ -111,9 +111,8 @@ void Touch::begin_anew() noexcept {
 
 void Touch::feel(Patch patch) {
     if (patch.surfaces() > settings_.feels.size())
-        throw Error(
-            fmt::format("{} surfaces, of which {} have a feel", patch.surfaces(), settings_.feels.size()),
-            spec_.name, "give TouchSettings::feels one for each");
+        throw Error(fmt::format("{} surfaces, but only {} feels", patch.surfaces(), settings_.feels.size()),
+                    spec_.name, "give TouchSettings::feels one entry for each");
     patches_.draft() = std::move(patch);
     patches_.publish();
 }
@@ -124,11 +123,11 @@ bool Touch::tick(double now, double* proxy_seconds) noexcept {
     const double seconds = std::max(now - time_, 0.0);
     push(now, seconds);
     time_ = now;
-    take_wishes();
+    take_new_settings();
     DeviceState read = state_;
     const bool there = device_->read(now, read);
     if (there)
-        take_in(read);
+        take_sample(read);
     else
         read = state_;
     was_gone_ = !there;
@@ -138,30 +137,30 @@ bool Touch::tick(double now, double* proxy_seconds) noexcept {
     const Contact* most = proxy_.deepest();
     if (most) touched_ = {most->surface, most->triangle, most->weights};
     wrench_ = safety_.allow({vec3(want), {}}, read, velocity_, most ? most->velocity : dvec3(0), now);
-    // The watchdog may have come between: then what was reckoned belongs to a time long ago.
+    // The watchdog may have stopped the device meanwhile: then this force was computed long ago.
     if (stopped_.exchange(false, std::memory_order_acq_rel)) {
         safety_.let_go(Held::stalled);
         wrench_ = safety_.none();
     }
-    // A device that does not say where it is, or does not take a force, may hold the one that it had.
+    // A device that cannot be read or written may still apply its last force.
     if (!there || !device_->write(wrench_)) {
         device_->stop();
         safety_.let_go(Held::gone);
         wrench_ = safety_.none();
     }
-    // Or here: then what it stopped was not yet this.
+    // It may also have stopped it just before the write.
     if (stopped_.load(std::memory_order_acquire)) {
         device_->stop();
         wrench_ = {};
     }
     leave_marks();
-    tell(now);
+    publish(now);
     ticking_ = false;
     return there;
 }
 
-// The surface was given what the hand was, the other way. A force that was left alone for longer than any may
-// be, the watchdog has taken back.
+// Newton's third law: the surface gets the opposite of the hand's impulse. The watchdog ends a force after a
+// limited time without ticks.
 void Touch::push(double now, double seconds) {
     const dvec3 force(wrench_.force);
     if (force != dvec3(0)) {
@@ -173,10 +172,10 @@ void Touch::push(double now, double seconds) {
     pushes_.send();
 }
 
-// What another thread has asked for since the last tick.
-void Touch::take_wishes() {
-    if (wishes_.fetch()) {
-        const TouchSettings& settings = wishes_.shown();
+// Takes the settings that another thread has sent since the last tick.
+void Touch::take_new_settings() {
+    if (new_settings_.fetch()) {
+        const TouchSettings& settings = new_settings_.shown();
         proxy_.set_radius(settings.radius);
         safety_.set(settings.safety);
         lost_ = settings.safety.lost;
@@ -192,13 +191,13 @@ void Touch::take_wishes() {
     }
 }
 
-// Walls that the device holds still at the loop's rate and in the scale that it has now. Half of what it says
-// is on the safe side.
+// Limits stiffness to what the device can render stably at the loop's rate and in its present scale. Half of
+// what it claims is on the safe side.
 void Touch::bound_stiffness() {
     const double scale = double(state_.forces) * double(state_.motion);
     const double most = 0.5 * double(spec_.stiffness) * std::min(rate_ / usual_rate, 1.0) / scale;
     for (std::size_t s = 0; s < feels_.size(); ++s)
-        feels_[s].stiffness = std::min(wishes_.shown().feels[s].stiffness, most);
+        feels_[s].stiffness = std::min(new_settings_.shown().feels[s].stiffness, most);
 }
 
 bool Touch::watch(double now) noexcept {
@@ -210,23 +209,23 @@ bool Touch::watch(double now) noexcept {
 }
 
 void Touch::let_go() noexcept {
-    stopped_.store(true, std::memory_order_release);  // for a tick that is under way,
+    stopped_.store(true, std::memory_order_release);  // for a tick under way,
     device_->stop();
-    stopped_.store(true, std::memory_order_release);  // and for one that began in between
+    stopped_.store(true, std::memory_order_release);  // and for one that began meanwhile
 }
 
-// A sample that is none leaves the hand where it was; Safety sees it too and lets go. After the device was
-// gone the hand may be anywhere, as if it had been placed.
-void Touch::take_in(const DeviceState& read) {
+// An invalid sample does not move the hand; Safety sees it, too, and lets go of the force. After the device
+// was gone, the hand may be anywhere, as after a jump of `placed`.
+void Touch::take_sample(const DeviceState& read) {
     if (!is_sound(read)) return;
     if (!knows_place_ || was_gone_ || read.placed != state_.placed) {
         proxy_.put(read.pose.place);
         velocity_ = dvec3(0);
     } else if (const double seconds = read.time - state_.time; seconds > 0) {
-        const TouchSettings& settings = wishes_.shown();
+        const TouchSettings& settings = new_settings_.shown();
         dvec3 speed = (read.pose.place - state_.pose.place) / seconds;
         if (!(glm::length(speed) <= settings.safety.fastest_hand))
-            speed = velocity_ = dvec3(0);  // no motion of a hand
+            speed = velocity_ = dvec3(0);  // the jump is no motion
         velocity_ += (1 - std::exp(-seconds / settings.velocity_filter)) * (speed - velocity_);
     }
     state_ = read;
@@ -239,12 +238,12 @@ dvec3 Touch::wanted(double now, double* proxy_seconds) {
     const dvec3 hand = state_.pose.place;
     const double pushed = proxy_.follow(patches_.shown(), now, hand, friction_);
     if (proxy_seconds) *proxy_seconds = thread_seconds() - start;
-    if (pushed > wishes_.shown().surprise) safety_.let_go(Held::pushed);
+    if (pushed > new_settings_.shown().surprise) safety_.let_go(Held::pushed);
     const Contact* most = proxy_.deepest();
     return most ? force(proxy_, hand, velocity_, feels_, marks_.on(std::size_t(most->surface))) : dvec3(0);
 }
 
-// A force that turns at once, as over an edge of a coarse mesh, feels like the edge and not like the surface.
+// A low-pass filter on the direction of the force: without it one would feel the edges of a coarse mesh.
 dvec3 Touch::turned_slowly(dvec3 wanted, double seconds) {
     const double strength = glm::length(wanted);
     if (!(strength > 0)) {
@@ -253,7 +252,7 @@ dvec3 Touch::turned_slowly(dvec3 wanted, double seconds) {
     }
     const dvec3 now = wanted / strength;
     if (direction_ == dvec3(0)) direction_ = now;
-    const double slowness = wishes_.shown().direction_filter;
+    const double slowness = new_settings_.shown().direction_filter;
     const double weight = slowness > 0 ? 1 - std::exp(-seconds / slowness) : 1;
     direction_ += weight * (now - direction_);
     const double length = glm::length(direction_);
@@ -261,42 +260,43 @@ dvec3 Touch::turned_slowly(dvec3 wanted, double seconds) {
     return strength * direction_;
 }
 
-// What is deeper than a surface springs back from stays; but what no hand felt leaves nothing.
+// What is deeper than the yield depth lasts; but only where a force was felt.
 void Touch::leave_marks() {
     if (safety_.held() != Held::no && safety_.held() != Held::ramping) return;
     for (const Contact& contact : proxy_.contacts())
         marks_.leave(contact, feels_[std::size_t(contact.surface)], stroke_);
 }
 
-void Touch::tell(double now) {
-    told_.time = now;
-    told_.pose = state_.pose;
-    told_.velocity = vec3(velocity_);
-    told_.proxy = vec3(proxy_.position());
-    told_.force = wrench_.force;
-    told_.held = safety_.held();
-    told_.last_reason = safety_.last_reason();
-    told_.buttons = state_.buttons;
-    told_.placed = state_.placed;
-    told_.warmth = safety_.warmth();
-    told_.depth = 0;
-    told_.count = 0;
+void Touch::publish(double now) {
+    published_.time = now;
+    published_.pose = state_.pose;
+    published_.velocity = vec3(velocity_);
+    published_.proxy = vec3(proxy_.position());
+    published_.force = wrench_.force;
+    published_.held = safety_.held();
+    published_.last_reason = safety_.last_reason();
+    published_.buttons = state_.buttons;
+    published_.placed = state_.placed;
+    published_.warmth = safety_.warmth();
+    published_.depth = 0;
+    published_.count = 0;
     auto add = [&](const Dent& dent, std::size_t surface) {
-        if (told_.count == most_dents) return;
-        told_.dents[std::size_t(told_.count)] = dent;
-        told_.surfaces[std::size_t(told_.count++)] = int(surface);
+        if (published_.count == most_dents) return;
+        published_.dents[std::size_t(published_.count)] = dent;
+        published_.surfaces[std::size_t(published_.count++)] = int(surface);
     };
     for (std::size_t s = 0; s < marks_.surfaces(); ++s)
         for (const Dent& dent : marks_.on(s)) add(dent, s);
-    told_.lasting = told_.count;
-    told_.last_stroke = marks_.last_stroke();
+    published_.lasting = published_.count;
+    published_.last_stroke = marks_.last_stroke();
     for (const Contact& contact : proxy_.contacts()) {
         const auto s = std::size_t(contact.surface);
         const Dent dent = dent_under(contact, feels_[s], marks_.on(s));
         if (dent.depth != 0) add(dent, s);
-        told_.depth = std::max(told_.depth, float(contact.depth - lasting_depth(marks_.on(s), contact)));
+        published_.depth =
+            std::max(published_.depth, float(contact.depth - lasting_depth(marks_.on(s), contact)));
     }
-    felt_.store(told_);
+    felt_.store(published_);
 }
 
 }  // namespace palpate

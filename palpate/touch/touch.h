@@ -18,135 +18,138 @@
 namespace palpate {
 
 struct TouchSettings {
-    double radius = 0.003;  // m, of the tip; above 0, below 1
-    std::vector<Feel> feels = {
-        {}};  // one for each surface that it meets, in the order of the patches' Touchables
+    double radius = 0.003;           // m, of the tip, the proxy; above 0, below 1
+    std::vector<Feel> feels = {{}};  // one for each surface, in the order of the patches' Touchables
     SafetySettings safety = {};
-    double surprise = 0.002;  // m: a surface that moves the tip by more than its speed explains lets go of it
-    double velocity_filter =
-        0.002;  // s: a hand's speed is its way over so long, because places come in steps
-    double direction_filter = 0.003;  // s: so long a force takes to turn when the tip goes over an edge
+    double surprise = 0.002;  // m: if a surface moves the proxy farther than its speed explains, the force is
+                              // let go
+    double velocity_filter = 0.002;  // s: the window over which the velocity of the hand is measured, because
+                                     // positions are quantised
+    double direction_filter = 0.003;  // s: the time constant with which the force turns when the tip goes
+                                      // over an edge
 };
 
-/// What a touch was like at its last tick.
+/// The state of a touch at its last tick.
 struct Felt {
     double time = 0;                   // s
     Pose pose = {};                    // of the device
     vec3 velocity = vec3(0);           // m/s, of the hand
     vec3 proxy = vec3(0);              // m
     vec3 force = vec3(0);              // N, on the hand
-    float depth = 0;                   // m, how deep it presses, below what stays of dents
-    Held held = Held::waiting;         // whether that is all,
-    Held last_reason = Held::waiting;  // and why it was let go of the last time
+    float depth = 0;                   // m, how deep it presses, below lasting dents
+    Held held = Held::waiting;         // whether and why the force is reduced,
+    Held last_reason = Held::waiting;  // and why it was last let go
     unsigned buttons = 0;
     unsigned placed = 0;
     Warmth warmth = {};  // of the device's motors
 
-    // The dents that surfaces shall be drawn with: those that stay and those under the tip.
+    // The dents to draw surfaces with: the lasting ones and those under the tip.
     std::array<Dent, most_dents> dents = {};
-    std::array<int, most_dents> surfaces = {};  // whose they are
+    std::array<int, most_dents> surfaces = {};  // the surfaces that they are in
     int count = 0;
-    int lasting = 0;      // the first so many of them stay,
-    int last_stroke = 0;  // and the latest of the strokes that made those; 0 if there are none
+    int lasting = 0;      // how many of them last: they come first
+    int last_stroke = 0;  // the latest stroke that made one of those; 0 if there are none
 
     std::vector<Dent> dents_of(int surface) const;
 };
 
-/// One hand: its device, its proxy, what it feels and leaves. tick() is all that happens in a thousandth of a
-/// second; a TouchLoop calls it on a thread of its own, tests and films on a clock of theirs. It allocates
-/// nothing, locks nothing and never throws. Everything else may be called from any one other thread
-/// meanwhile.
+/// One hand's touch: its device, its proxy, what it feels and the dents it leaves. tick() is one step of the
+/// servo loop, a thousandth of a second; a TouchLoop calls it on a thread of its own, tests and films on
+/// their own clock. It allocates nothing, locks nothing and never throws. All other methods may be called
+/// meanwhile, from one other thread.
 class Touch {
  public:
-    /// Opens the device. Throws Error if it cannot be opened, or if it or the settings are out of bounds.
-    /// `warmth`: of its motors, where they were used before (Felt::warmth).
+    /// Opens the device. Throws Error if it cannot be opened, or if its properties or the settings are out of
+    /// range. `warmth`: of its motors, if they were used before (Felt::warmth).
     Touch(std::unique_ptr<Device> device, TouchSettings settings, const Warmth& warmth = {});
     ~Touch();  // no force is left
     Touch(const Touch&) = delete;
     Touch& operator=(const Touch&) = delete;
 
-    /// Other settings from the next tick on, for as many surfaces: the device stays open and its motors as
-    /// warm as they are, and dents stay. Throws Error like the constructor, and then all is as it was.
+    /// Sets new settings from the next tick on, for the same number of surfaces. The device stays open, the
+    /// warmth of its motors and the dents are kept. Throws Error like the constructor; then nothing has
+    /// changed.
     void set(TouchSettings settings);
 
-    /// What the hand can meet from now on, of no more surfaces than there are feels; else throws Error. Call
-    /// it as often as surfaces move, or once if they do not.
+    /// Sets what the hand can touch from now on. Call it whenever surfaces have moved; once if they do not
+    /// move. Throws Error if it has more surfaces than there are feels.
     void feel(Patch patch);
 
-    /// The newest.
+    /// The newest state.
     Felt felt() const { return felt_.load(); }
 
-    /// Begins a stroke and returns its number, from 1 on: dents that will stay belong to it.
+    /// Begins a stroke and returns its number, from 1 on: lasting dents belong to it from now on.
     int begin_stroke() noexcept { return ++stroke_; }
 
-    /// From the next tick on the dents of this stroke and of all later ones are gone.
+    /// Removes the dents of this stroke and of all later ones, at the next tick.
     void forget(int from_stroke) noexcept;
 
-    /// All dents are gone, and the hand begins without force, as where it is placed: for surfaces that are
-    /// others now, or as they were at the start.
+    /// Removes all dents and begins again without force: for when surfaces were replaced or reset.
     void begin_anew() noexcept;
 
-    /// The next of the pushes by which the hand gives to surfaces what they gave to it: a simulation takes
-    /// all that there are at each of its steps. Their sum is the time integral of the force that was written
-    /// to the device, the other way, up to the last tick; a slow reader loses nothing of it. Where a force
-    /// fades after the hand has left, it is the surface that it left which is pushed. What a watchdog took
-    /// back counts for SafetySettings::lost at most. Triangles are those of the patch that was felt at
-    /// Push::time, so take all before another one has others. False if there is none.
+    /// The next push, the reaction of the hand on a surface: a simulation should take all of them at each of
+    /// its steps. False if there is none. Their sum is minus the time integral of the force that was written
+    /// to the device, up to the last tick; a slow reader loses nothing. A force that still fades after the
+    /// hand has left pushes the surface that it left. After a stall, the force counts for
+    /// SafetySettings::lost at most. Triangles are those of the patch at Push::time, so take all pushes
+    /// before a patch with other triangles is set.
     bool next(Push& push) noexcept { return pushes_.next(push); }
 
-    /// Of the loop that ticks it, Hz: below 1000, walls are as much less stiff, or they would not be still.
+    /// Sets the rate of the loop that ticks it, Hz: below 1000, stiffness is reduced in proportion, or walls
+    /// would vibrate.
     void expect_rate(double rate) noexcept { rate_ = rate; }
 
-    /// False if the device did not answer. `proxy_seconds`, if given, is what the proxy took of the
-    /// processor's time.
+    /// False if the device did not answer. `proxy_seconds`, if given, receives the processor time of the
+    /// proxy.
     bool tick(double now, double* proxy_seconds = nullptr) noexcept;
 
-    /// The watchdog's, once a millisecond: stops the device as long as there has been no tick for too long.
-    /// True the first time.
+    /// For the watchdog, once a millisecond: stops the device if there has been no tick for too long. True
+    /// the first time.
     bool watch(double now) noexcept;
 
-    /// No more force, when nobody ticks any more; the next tick, if there is one, begins anew.
+    /// Stops the device, when nothing ticks any more; the next tick, if any, begins without force.
     /// Async-signal-safe.
     void let_go() noexcept;
 
     /// Whether a tick is under way.
     bool is_ticking() const noexcept { return ticking_; }
 
-    /// Stiffnesses as far as the device bears them.
+    /// With stiffnesses limited to what the device can render.
     const TouchSettings& settings() const { return settings_; }
     const DeviceSpec& device() const { return spec_; }
 
  private:
-    void take_wishes();
-    void take_in(const DeviceState& read);
+    void take_new_settings();
+    void take_sample(const DeviceState& read);
     void bound_stiffness();
     dvec3 wanted(double now, double* proxy_seconds);
     dvec3 turned_slowly(dvec3 wanted, double seconds);
     void leave_marks();
     void push(double now, double seconds);
-    void tell(double now);
+    void publish(double now);
 
     std::unique_ptr<Device> device_;
     const DeviceSpec spec_;
-    TouchSettings settings_;              // of whoever sets them
-    TripleBuffer<TouchSettings> wishes_;  // as they were set
-    std::vector<Feel> feels_;             // those, as far as the device bears them now
+    TouchSettings settings_;                    // of the thread that sets them
+    TripleBuffer<TouchSettings> new_settings_;  // on their way to the loop
+    std::vector<Feel> feels_;  // the same, with stiffness limited to what the device can render
+                               // now
     std::vector<Friction> friction_;
     Proxy proxy_;
     Safety safety_;
     TripleBuffer<Patch> patches_;
     std::atomic<double> lost_ = 0;  // s, of the settings, for the watchdog
-    DeviceState state_ = {};        // the newest that is sound
+    DeviceState state_ = {};        // the newest valid sample
     bool knows_place_ = false;
     bool was_gone_ = false;
     dvec3 velocity_ = dvec3(0);
     dvec3 direction_ = dvec3(0);
     double time_ = 0;
     Marks marks_;
-    Wrench wrench_ = {};  // that the device was told
-    Push touched_ = {};   // where it touched a surface the last time
+    Wrench wrench_ = {};  // that was written to the device
+    Push touched_ = {};   // where it last touched a surface
     PushQueue pushes_;
-    Felt told_ = {};
+    Felt published_ = {};
     SequenceLock<Felt> felt_;
     std::atomic<double> ticked_;  // s; below 0 before the first
     std::atomic<bool> stopped_ = false, ticking_ = false, begins_anew_ = false;

@@ -15,7 +15,7 @@ constexpr double watch_every = 0.001;  // s
 
 Watchdog::Watchdog(std::vector<Touch*> touches) : touches_(std::move(touches)) {
     if (std::ranges::count(touches_, nullptr) > 0)
-        throw Error("a touch that is not there", "the watchdog", "make it before");
+        throw Error("a touch that is null", "the watchdog", "make the touch first");
     thread_ = std::thread([this] { run(); });
 }
 
@@ -24,7 +24,7 @@ Watchdog::~Watchdog() {
     thread_.join();
 }
 
-// It sleeps nearly always, and runs before the loop, which may be stuck in anything.
+// It sleeps nearly all the time, and has priority over the loop, which may be stuck.
 void Watchdog::run() {
     keep_time(true);
     while (!ends_.load(std::memory_order_acquire)) {

@@ -8,18 +8,19 @@
 
 namespace palpate {
 
-/// Lets go of touches that are not ticked any more: every millisecond, on a thread of its own with the
-/// highest priority that the system grants. For whoever ticks from a thread of his own, such as a vendor's
-/// servo loop; a TouchLoop has one. Make it before the first tick; the touches must outlive it.
+/// A watchdog: stops the devices of touches whose loop has stalled. It checks every millisecond, on a thread
+/// of its own with the highest priority that the system grants. For programs that tick from a thread of their
+/// own, such as a vendor's servo loop; a TouchLoop has one already. Make it before the first tick; the
+/// touches must outlive it.
 class Watchdog {
  public:
-    /// Throws Error if one of the touches is not there.
+    /// Throws Error if one of the touches is null.
     explicit Watchdog(std::vector<Touch*> touches);
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// How often it had to act.
+    /// How often it has intervened.
     std::uint64_t times_stalled() const { return stalls_.load(std::memory_order_relaxed); }
 
  private:

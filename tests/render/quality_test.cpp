@@ -359,8 +359,8 @@ TEST_F(Qualities, APictureOfWhatIsNotThereIsRefused) {
     refused("a mesh that was not added", [](Picture& p) { p.surfaces[0].mesh = 100; });
     refused("a map that was not added", [](Picture& p) { p.surfaces[0].look.colour_map = 3; });
     refused("a map that was not added", [](Picture& p) { p.surfaces[0].look.normal_map = 3; });
-    refused("than its mesh has vertices", [](Picture& p) { p.surfaces[0].positions = {}; });
-    refused("than its mesh has vertices",
+    refused("number of its mesh's vertices", [](Picture& p) { p.surfaces[0].positions = {}; });
+    refused("number of its mesh's vertices",
             [](Picture& p) { p.surfaces[0].normals = p.surfaces[0].normals.first(7); });
     refused("a missing point", [](Picture& p) { p.wires[0].points = p.wires[0].points.first(1); });
 

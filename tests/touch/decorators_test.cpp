@@ -203,7 +203,7 @@ TEST(Faulty, FailsOnSchedule) {
     double now = 1000;
     std::vector<Fault> faults;
     double from = 0.1;
-    for (FaultKind kind : {FaultKind::no_number, FaultKind::jump, FaultKind::vanish, FaultKind::stall,
+    for (FaultKind kind : {FaultKind::not_a_number, FaultKind::jump, FaultKind::vanish, FaultKind::stall,
                            FaultKind::freeze, FaultKind::refuse}) {
         faults.push_back({.kind = kind, .from = from, .to = from + 0.05});
         from += 0.1;

@@ -114,8 +114,8 @@ TEST(Log, BadFilesAreOneLineThatNamesTheirs) {
         {old_head + "1,1,0,0,0,0,0,0,0\n", "line 5 is not 10 numbers"},
         {old_head + old_row + row, "line 6 is not 10 numbers"},
         {old_head + old_row + "2,1,0,0,1e99,0,0,0,0,0\n", "line 6 is not 10 numbers"},
-        {old_head + "inf,1,0,0,0,0,0,0,0,0\n", "line 5 has a time that is no number"},
-        {old_head + "1,nan,0,0,0,0,0,0,0,0\n", "line 5 has a time that is no number"},
+        {old_head + "inf,1,0,0,0,0,0,0,0,0\n", "line 5 has a time that is not a number"},
+        {old_head + "1,nan,0,0,0,0,0,0,0,0\n", "line 5 has a time that is not a number"},
         {std::string(100, '\0'), "line 1 is not"},
     };
     for (const auto& [text, expected] : cases) {

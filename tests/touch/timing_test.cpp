@@ -30,7 +30,7 @@ TEST(Durations, QuantilesAreThoseOfTheSortedList) {
     EXPECT_EQ(counted.longest(), list.back());
     EXPECT_LE(std::abs(counted.mean() - sum / double(list.size())), 1e-12);
     std::uint64_t all = 0;
-    for (const auto& box : counted.boxes()) all += box.count;
+    for (const auto& bin : counted.bins()) all += bin.count;
     EXPECT_EQ(all, list.size());
 }
 

@@ -565,7 +565,7 @@ TEST(Touch, WhateverFailsTheForceIsWithinItsLimitsAndGoneIn25Milliseconds) {
     const Mesh mesh = slab();
     constexpr double fails = 2.0, over = 2.05;
     const Trial trials[] = {
-        {"not a number", {FaultKind::no_number, fails, over}, Held::not_finite, true},
+        {"not a number", {FaultKind::not_a_number, fails, over}, Held::not_finite, true},
         {"a jump of 5 cm down", {FaultKind::jump, fails, over, vec3(0, -0.05f, 0)}, Held::jumped, true},
         {"a jump of 5 cm aside", {FaultKind::jump, fails, over, vec3(0.05f, 0, 0)}, Held::jumped, true},
         {"gone", {FaultKind::vanish, fails, over}, Held::gone, true},

@@ -16,7 +16,7 @@ void Clutch::open() {
 bool Clutch::read(double now, DeviceState& state) noexcept {
     DeviceState real;
     if (!Decorator::read(now, real)) return false;
-    // A place that is not finite goes by: an offset to it would never end.
+    // Ignores a place that is not finite: the offset would stay so for ever.
     const bool sound = std::isfinite(dot(real.pose.place, real.pose.place));
     const bool let_go = held_ || (real.buttons & buttons_) != 0;
     if (sound) {

@@ -5,15 +5,15 @@
 
 namespace palpate {
 
-/// Lets a person move the device elsewhere while its pose in the scene waits, as one lifts a mouse. Let go of
-/// by hold() or while a button is pressed: then the pose stays and no force reaches the device. Taken up
-/// again it goes on from that place, turned as the device is, `placed` anew.
+/// A clutch (indexing): lets a person move the device while its pose in the scene stays, as one lifts a
+/// mouse. While hold(true) or a button holds it, the pose stays and no force reaches the device. Afterwards
+/// it continues from that place, with the device's orientation and a new `placed`.
 class Clutch final : public Decorator {
  public:
-    /// `buttons`: any of these bits lets go; they stay among the device's.
+    /// `buttons`: each of these bits holds it while pressed; they are still reported.
     explicit Clutch(std::unique_ptr<Device> inner, unsigned buttons = 0);
 
-    /// From any thread.
+    /// May be called from any thread.
     void hold(bool held) noexcept { held_ = held; }
 
     void open() override;
@@ -26,7 +26,7 @@ class Clutch final : public Decorator {
     bool known_ = false;       // whether there is a pose yet
     bool let_go_ = false;      // at the last read
     Pose at_ = {};             // in the scene
-    dvec3 offset_ = dvec3(0);  // m, from the device's place to it
+    dvec3 offset_ = dvec3(0);  // m, from the device's place to that in the scene
     unsigned placed_ = 0;
 };
 

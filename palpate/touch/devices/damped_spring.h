@@ -3,7 +3,7 @@
 
 namespace palpate {
 
-/// A mass on a spring and a damper: x'' + damping x' + stiffness x = 0, x counted from its place of rest.
+/// A damped harmonic oscillator: x'' + damping x' + stiffness x = 0, where x is the offset from rest.
 struct DampedSpring {
     double stiffness;  // 1/s²: k over m; above 0
     double damping;    // 1/s: c over m
@@ -14,7 +14,7 @@ struct Swing {
     dvec3 velocity = dvec3(0);  // m/s
 };
 
-/// Where it is some time later: the equation's solution, so any time is as exact as any other.
+/// Its state some time later, by the exact solution: equally exact after any time.
 Swing after(const Swing& from, const DampedSpring& spring, double time);
 
 }  // namespace palpate

@@ -7,13 +7,13 @@
 
 namespace palpate {
 
-/// A device around another, which it owns. By itself it changes nothing: what derives from it overrides those
-/// of the five methods in which it does.
+/// A device around another, which it owns (the decorator pattern). It passes all five methods on; derived
+/// classes override those that they change.
 class Decorator : public Device {
  public:
-    /// Throws Error if there is none inside.
+    /// Throws Error if `inner` is null.
     explicit Decorator(std::unique_ptr<Device> inner) : inner_(std::move(inner)) {
-        if (!inner_) throw Error("no device", "what goes around one", "make it before");
+        if (!inner_) throw Error("no device", "a decorator", "make the inner device first");
     }
 
     DeviceSpec spec() const override { return inner_->spec(); }

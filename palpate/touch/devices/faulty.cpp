@@ -8,8 +8,8 @@ Faulty::Faulty(std::unique_ptr<Device> inner, std::vector<Fault> faults, std::fu
     : Decorator(std::move(inner)), faults_(std::move(faults)), sleep_(std::move(sleep)) {
     for (const Fault& fault : faults_)
         if (!(fault.from <= fault.to))
-            throw Error("a fault that is over before it begins", spec().name, "give it times that rise");
-    if (!sleep_) throw Error("no way to pass a stall", spec().name, "say how the clock sleeps");
+            throw Error("a fault that ends before it begins", spec().name, "give it increasing times");
+    if (!sleep_) throw Error("no sleep function for stalls", spec().name, "hand one in");
 }
 
 void Faulty::open() {
@@ -39,7 +39,7 @@ bool Faulty::read(double now, DeviceState& state) noexcept {
     DeviceState read;
     if (!Decorator::read(now, read)) return false;
     last_ = state = read;
-    if (due(FaultKind::no_number)) state.pose.place = dvec3(std::numeric_limits<double>::quiet_NaN());
+    if (due(FaultKind::not_a_number)) state.pose.place = dvec3(std::numeric_limits<double>::quiet_NaN());
     if (const Fault* fault = due(FaultKind::jump)) state.pose.place += dvec3(fault->jump);
     return true;
 }

@@ -8,25 +8,25 @@
 namespace palpate {
 
 enum class FaultKind {
-    no_number,  // the place is NaN
-    jump,       // the place is off by `jump`
-    vanish,     // the device is gone, and its motors have no current
-    stall,      // read() does not return before it is over
-    freeze,     // the last sample again and again
-    refuse,     // write() fails, and the device keeps what it pushed with
+    not_a_number,  // the position is NaN
+    jump,          // the position is off by `jump`
+    vanish,        // the device is gone, and its motors are off
+    stall,         // read() blocks until the fault is over
+    freeze,        // read() repeats the last sample
+    refuse,        // write() fails, and the device keeps its last force
 };
 
 struct Fault {
     FaultKind kind = FaultKind::vanish;
-    double from = 0, to = 0;        // s since the first read: from this on, until before that
+    double from = 0, to = 0;        // s since the first read: from <= time < to
     vec3 jump = vec3(0.05f, 0, 0);  // m
 };
 
-/// Any device that fails on schedule, to see what a loop makes of it.
+/// Fault injection: a device that fails on schedule, for tests of how a loop copes.
 class Faulty final : public Decorator {
  public:
-    /// `sleep`: how a stall passes so many seconds, on the clock that the test has. Throws Error if there is
-    /// none, or if a fault ends before it begins.
+    /// `sleep`: lets a stall last so many seconds, on the test's clock. Throws Error if it is empty, or if a
+    /// fault ends before it begins.
     Faulty(std::unique_ptr<Device> inner, std::vector<Fault> faults,
            std::function<void(double seconds)> sleep);
 
@@ -40,9 +40,9 @@ class Faulty final : public Decorator {
 
     std::vector<Fault> faults_;
     std::function<void(double)> sleep_;
-    std::optional<double> start_;      // of the loop's clock
+    std::optional<double> start_;      // on the loop's clock
     double time_ = 0;                  // s since then, at the last read
-    std::optional<DeviceState> last_;  // before any fault
+    std::optional<DeviceState> last_;  // before the faults
 };
 
 }  // namespace palpate

@@ -13,7 +13,8 @@ dvec3 unit(dvec3 v, dvec3 otherwise) {
     return std::isfinite(squared) && squared > 1e-30 ? v / std::sqrt(squared) : otherwise;
 }
 
-// To the right in a picture that looks along `forward`; as the renderer has it, also where `up` says nothing.
+// The direction to the right in a picture that looks along `forward`, as in the renderer, also if `up` is
+// degenerate.
 dvec3 rightward(dvec3 forward, dvec3 up) {
     const dvec3 right = cross(forward, up);
     if (dot(right, right) >= 1e-8) return normalize(right);
@@ -24,42 +25,42 @@ dvec3 rightward(dvec3 forward, dvec3 up) {
 
 Mouse::Mouse(const MouseSettings& settings, std::vector<PointerEvent> replay)
     : settings_(settings), replay_(std::move(replay)) {
-    telling_.event.position = 0.5f * vec2(settings.size);
-    telling_.camera = settings.camera;
-    telling_.size = settings.size;
-    shared_.store(telling_);
+    next_input_.event.position = 0.5f * vec2(settings.size);
+    next_input_.camera = settings.camera;
+    next_input_.size = settings.size;
+    shared_.store(next_input_);
 }
 
 void Mouse::point(const PointerEvent& event) noexcept {
-    telling_.event = event;
-    ++telling_.events;
-    shared_.store(telling_);
+    next_input_.event = event;
+    ++next_input_.events;
+    shared_.store(next_input_);
 }
 
 void Mouse::place(const PointerEvent& event) noexcept {
-    telling_.placed = event;
-    ++telling_.placings;
+    next_input_.placed = event;
+    ++next_input_.placings;
     point(event);
 }
 
 void Mouse::look(const Camera& camera, ivec2 size) noexcept {
-    telling_.camera = camera;
-    telling_.size = size;
-    telling_.placed = telling_.event;
-    ++telling_.placings;
-    shared_.store(telling_);
+    next_input_.camera = camera;
+    next_input_.size = size;
+    next_input_.placed = next_input_.event;
+    ++next_input_.placings;
+    shared_.store(next_input_);
 }
 
 void Mouse::open() {
     if (!(settings_.smoothing > 0 && std::isfinite(settings_.smoothing)))
-        throw Error("a smoothing that is no time", "mouse", "give it in s, above 0");
-    if (!std::isfinite(settings_.notch)) throw Error("a notch that is no length", "mouse", "give it in m");
+        throw Error("a smoothing that is not a positive time", "mouse", "give it in s, above 0");
+    if (!std::isfinite(settings_.notch)) throw Error("a notch that is not finite", "mouse", "give it in m");
     for (const PointerEvent& event : replay_)
         if (!std::isfinite(event.time)) throw Error("an event without a time", "mouse", "give it in s");
     const auto later = [](const PointerEvent& a, const PointerEvent& b) { return a.time < b.time; };
     if (!std::is_sorted(replay_.begin(), replay_.end(), later))
-        throw Error("events that go back in time", "mouse", "sort them");
-    told_ = shared_.load();
+        throw Error("events that are not in order of time", "mouse", "sort them");
+    input_ = shared_.load();
     start_.reset();
     next_ = 0;
 }
@@ -71,34 +72,34 @@ bool Mouse::read(double now, DeviceState& state) noexcept {
         swing_ = {};
     }
     for (; next_ < replay_.size() && *start_ + replay_[next_].time <= now; ++next_) {
-        Told told = told_;
-        told.event = replay_[next_];
-        take(told, *start_ + told.event.time, now, next_ == 0);
+        Input input = input_;
+        input.event = replay_[next_];
+        take(input, *start_ + input.event.time, now, next_ == 0);
     }
-    Told told = told_;
-    if (shared_.try_load(told) && (told.events != told_.events || told.placings != told_.placings)) {
-        const bool is_first = told_.events == 0 && told.placings == told_.placings;
-        if (told.placings != told_.placings) {
-            Told there = told;
-            there.event = told.placed;
+    Input input = input_;
+    if (shared_.try_load(input) && (input.events != input_.events || input.placings != input_.placings)) {
+        const bool is_first = input_.events == 0 && input.placings == input_.placings;
+        if (input.placings != input_.placings) {
+            Input there = input;
+            there.event = input.placed;
             take(there, there.event.time, now, true);
         }
-        take(told, told.event.time, now, is_first);
+        take(input, input.event.time, now, is_first);
     }
     advance(now);
     state = {.pose = {.place = target_ + swing_.offset},
              .time = now,
-             .buttons = told_.event.buttons,
+             .buttons = input_.event.buttons,
              .placed = placed_};
     return true;
 }
 
-// The hand turns to what it is told, at that time; or is placed there, if it was nowhere before or is seen
-// from elsewhere.
-void Mouse::take(const Told& told, double time, double now, bool anew) {
+// Sets the target of the hand at that time; or places the hand there, if it had no place before or the camera
+// has moved.
+void Mouse::take(const Input& input, double time, double now, bool anew) {
     advance(std::clamp(time, time_, now));
     const dvec3 from = target_;
-    told_ = told;
+    input_ = input;
     target_ = place();
     swing_.offset += from - target_;
     if (anew) {
@@ -113,9 +114,9 @@ void Mouse::advance(double time) {
     time_ = std::max(time_, time);
 }
 
-// Under the pointer, along its line of sight.
+// The place under the pointer, along its line of sight.
 dvec3 Mouse::place() const {
-    const Camera& camera = told_.camera;
+    const Camera& camera = input_.camera;
     const dvec3 eye = camera.eye, to = dvec3(camera.look_at) - eye;
     const dvec3 forward = unit(to, dvec3(0, 0, -1));
     const dvec3 right = rightward(forward, unit(camera.up, dvec3(0, 1, 0))), up = cross(right, forward);
@@ -123,9 +124,9 @@ dvec3 Mouse::place() const {
     const double angle = camera.angle >= 1 ? std::min(camera.angle, 170.0f) : 1.0f;
     const double slope = std::tan(0.5 * glm::radians(angle));
 
-    const dvec2 half = 0.5 * dvec2(glm::max(told_.size, ivec2(1)));
-    const dvec2 aside = (dvec2(told_.event.position) - half) / half.y * dvec2(1, -1) * slope;
-    const double depth = std::max(distance + double(told_.event.wheel) * settings_.notch, 0.01 * distance);
+    const dvec2 half = 0.5 * dvec2(glm::max(input_.size, ivec2(1)));
+    const dvec2 aside = (dvec2(input_.event.position) - half) / half.y * dvec2(1, -1) * slope;
+    const double depth = std::max(distance + double(input_.event.wheel) * settings_.notch, 0.01 * distance);
     return eye + depth * forward +
            (camera.orthographic ? distance : depth) * (aside.x * right + aside.y * up);
 }

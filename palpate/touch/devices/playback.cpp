@@ -10,12 +10,12 @@ namespace palpate {
 Playback::Playback(Log log) : log_(std::move(log)) {}
 
 void Playback::open() {
-    if (log_.ticks.empty()) throw Error("a log without a tick", log_.device, "record some");
+    if (log_.ticks.empty()) throw Error("a log without ticks", log_.device, "record some ticks");
     for (std::size_t i = 0; i < log_.ticks.size(); ++i) {
         const Tick& tick = log_.ticks[i];
         const bool rises = i == 0 || tick.now >= log_.ticks[i - 1].now;
         if (!std::isfinite(tick.now) || !std::isfinite(tick.state.time) || !rises)
-            throw Error("a log whose time does not go on", log_.device, "give its ticks in their order");
+            throw Error("a log whose times are not in order", log_.device, "sort its ticks");
     }
     later_.reset();
     at_ = 0;
@@ -36,7 +36,7 @@ bool Playback::read(double now, DeviceState& state) noexcept {
         const Pose &from = last.state.pose, &to = next.state.pose;
         state.pose = {glm::mix(from.place, to.place, part), glm::slerp(from.turn, to.turn, part)};
     }
-    // As old as the samples were then; after the last, as old as that one was.
+    // With the age that the samples had then; after the last, with the age of that one.
     const double sampled =
         over ? last.state.time + (then - last.now) : glm::mix(last.state.time, next.state.time, part);
     state.time = std::min(sampled + *later_, now);

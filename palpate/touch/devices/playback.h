@@ -7,9 +7,10 @@
 
 namespace palpate {
 
-/// Plays a log back from its first tick on, beginning with the first read, and stands still after its last.
-/// At the ticks of the log it says what the recorded device said, to the bit if the loop's clock begins as it
-/// did then. Between two ticks the pose goes straight, or stays with the earlier where it was `placed` anew.
+/// Plays back a log from its first tick, beginning with the first read, and stands still after its last. At
+/// the ticks of the log it returns exactly what the recorded device returned, to the bit if the loop's clock
+/// starts as it did then. Between two ticks the pose is interpolated linearly, or stays at the earlier one
+/// across a change of `placed`.
 class Playback final : public Device {
  public:
     explicit Playback(Log log);
@@ -22,8 +23,8 @@ class Playback final : public Device {
 
  private:
     Log log_;
-    std::optional<double> later_;  // s, than when it was recorded
-    std::size_t at_ = 0;           // the last tick that has come
+    std::optional<double> later_;  // s, from the recorded time to the present time
+    std::size_t at_ = 0;           // the last tick that is past
 };
 
 }  // namespace palpate

@@ -5,9 +5,10 @@
 namespace palpate {
 
 Recorder::Recorder(std::unique_ptr<Device> inner, double seconds, double rate) : Decorator(std::move(inner)) {
-    constexpr double most = 1e9;  // ticks: days of them
+    constexpr double most = 1e9;  // ticks: many days
     if (!(seconds >= 0 && rate > 0 && seconds * rate <= most))
-        throw Error("no length of a record", spec().name, "give it in s, and a rate in Hz above 0");
+        throw Error("an invalid duration or rate of a recording", spec().name,
+                    "give the duration in s and the rate in Hz, above 0");
     most_ = std::size_t(std::ceil(seconds * rate));
     log_.device = spec().name;
     log_.rate = rate;

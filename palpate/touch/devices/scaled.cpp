@@ -9,7 +9,7 @@ namespace {
 
 float forces(const Scale& scale) { return scale.forces > 0 ? scale.forces : 1 / scale.motion; }
 
-// A torque is a force on a lever, and levers are lengths.
+// A torque is a force times a lever arm, which is a length.
 float torques(const Scale& scale) { return forces(scale) / scale.motion; }
 
 vec3 no_longer_than(float most, vec3 v) {
@@ -21,7 +21,7 @@ void check(const Scale& scale, const std::string& device) {
     const auto is_usable = [](float factor) { return factor >= 1e-6f && factor <= 1e6f; };
     if (!is_usable(scale.motion) || !(scale.forces == 0 || is_usable(scale.forces)) ||
         !std::isfinite(dot(scale.about, scale.about)))
-        throw Error("a scale that cannot be", device, "give it a point and factors from 1e-6 to 1e6");
+        throw Error("a scale that is out of range", device, "give it a point and factors from 1e-6 to 1e6");
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ void Scaled::open() {
 
 bool Scaled::read(double now, DeviceState& state) noexcept {
     if (!Decorator::read(now, state)) return false;
-    shared_.try_load(used_);  // else the next time
+    shared_.try_load(used_);  // otherwise at the next read
     const Scale& scale = used_.scale;
     const dvec3 about(scale.about);
     state.pose.place = about + double(scale.motion) * (state.pose.place - about);

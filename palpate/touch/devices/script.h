@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// A hand that follows a path whatever pushes it. The path counts from the first read.
+/// A hand that follows a path, whatever forces act on it. The path's time counts from the first read.
 class Script final : public Device {
  public:
     explicit Script(Path path);
@@ -19,7 +19,7 @@ class Script final : public Device {
 
  private:
     Path path_;
-    std::optional<double> start_;  // of the loop's clock
+    std::optional<double> start_;  // on the loop's clock
 };
 
 }  // namespace palpate

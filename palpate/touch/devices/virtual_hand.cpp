@@ -10,9 +10,9 @@ namespace palpate {
 namespace {
 
 constexpr double most_delay = 1;         // s
-constexpr double fastest_loop = 10'000;  // Hz: for so many delayed forces there is room
+constexpr double fastest_loop = 10'000;  // Hz: there is room for the delayed forces of such a loop
 
-// The plan from a moment on: where it is, how fast, and for how long it goes on so.
+// The linear piece of the plan at a moment: position, velocity and end.
 struct Course {
     dvec3 place, velocity;
     double until;  // s
@@ -50,10 +50,10 @@ void VirtualHand::open() {
     check(plan_, "virtual hand");
     require(
         s.mass > 0 && s.stiffness > 0 && s.damping >= 0 && std::isfinite(s.mass + s.stiffness + s.damping),
-        "a hand that cannot be", "give it a mass and a stiffness above 0 and a damping that is not below");
-    require(s.resolution >= 0 && std::isfinite(s.resolution), "a resolution that is no length",
+        "an impossible hand", "give it a mass and a stiffness above 0 and a damping of at least 0");
+    require(s.resolution >= 0 && std::isfinite(s.resolution), "an invalid resolution",
             "give it in m, or 0 for none");
-    require(s.delay >= 0 && s.delay <= most_delay, "a delay that cannot be", "give it in s, from 0 to 1");
+    require(s.delay >= 0 && s.delay <= most_delay, "an invalid delay", "give it in s, from 0 to 1");
     waiting_.resize(std::size_t(s.delay * fastest_loop) + 2);
     first_ = count_ = 0;
     acting_ = {};
@@ -74,7 +74,7 @@ bool VirtualHand::read(double now, DeviceState& state) noexcept {
 }
 
 bool VirtualHand::write(const Wrench& wrench) noexcept {
-    // Only a loop faster than any finds no room. Then the newest gives way, so that the order stays.
+    // If a loop is even faster and there is no room, the newest force is dropped, which keeps the order.
     if (count_ == waiting_.size()) --count_;
     waiting_[(first_ + count_++) % waiting_.size()] = {
         time_ + settings_.delay, finite(wrench.force) ? wrench.force : vec3(0), stops_.load()};
@@ -82,12 +82,12 @@ bool VirtualHand::write(const Wrench& wrench) noexcept {
     return true;
 }
 
-// A write that was under way when the device was stopped still bears the older count.
+// A write that was under way when the device was stopped still has the older count.
 void VirtualHand::stop() noexcept { ++stops_; }
 
 vec3 VirtualHand::force() const { return acting_.stops == stops_.load() ? acting_.force : vec3(0); }
 
-// The forces whose time has come; the last of them acts.
+// Takes the forces that are due; the last of them acts.
 void VirtualHand::take_due() {
     for (; count_ > 0 && waiting_[first_].from <= time_; --count_) {
         acting_ = waiting_[first_];
@@ -95,7 +95,7 @@ void VirtualHand::take_due() {
     }
 }
 
-// Piece by piece: until the plan bends or the next force comes.
+// Advances piece by piece: to each corner of the plan and to each new force.
 void VirtualHand::advance(double until) {
     const DampedSpring arm{settings_.stiffness / settings_.mass, settings_.damping / settings_.mass};
     while (time_ < until) {

@@ -10,24 +10,25 @@
 
 namespace palpate {
 
-/// A person's arm at the tip of a device, and the device. The defaults are what van Beek et al. (Scientific
-/// Reports 5, 18004, 2015, the trial of figure 3) found of an arm that holds a force-feedback device.
+/// The impedance of a person's arm that holds a device, and properties of the device. The defaults are those
+/// that van Beek et al. (Scientific Reports 5, 18004, 2015, the trial of figure 3) measured on an arm with a
+/// force-feedback device.
 struct VirtualHandSettings {
     double mass = 0.554;     // kg, above 0
-    double damping = 6.45;   // N s/m, against the plan's velocity
-    double stiffness = 135;  // N/m, towards the plan's place; above 0
-    double resolution = 0;   // m: positions are read as multiples of it, as from an encoder; 0: as they are
-    double delay = 0;  // s from a write, that is from the read before it, until the force acts; 1 at most
-    // What its motors are said to do (DeviceSpec); they push as they are told.
+    double damping = 6.45;   // N·s/m, relative to the velocity of the plan
+    double stiffness = 135;  // N/m, towards the position of the plan; above 0
+    double resolution = 0;   // m: positions are quantised to it, as by an encoder; 0: exact
+    double delay = 0;  // s from a write (that is, from the read before it) until the force acts; 1 at most
+    // What its DeviceSpec says; the forces that act are not limited to that.
     float peak_force = 3.3f;     // N
     float lasting_force = 0.9f;  // N
     float stiffest_wall = 1000;  // N/m
 };
 
-/// A simulated person whom forces push: mass, spring and damper that are pulled along a plan,
+/// A simulated person who yields to forces: a mass that a spring and a damper pull along a plan,
 ///     m x'' = k (plan - x) + c (plan' - x') + force.
-/// Between two reads the force is constant and the plan straight, so the motion is known in closed form: it
-/// is the same at any rate, to rounding. The plan counts from the first read, where the hand rests on it.
+/// Between two reads the force is constant and the plan linear, so the motion has a closed form: it is the
+/// same at any rate, up to rounding. The plan's time counts from the first read, when the hand rests on it.
 class VirtualHand final : public Device {
  public:
     explicit VirtualHand(Path plan, const VirtualHandSettings& settings = {});
@@ -38,13 +39,13 @@ class VirtualHand final : public Device {
     bool write(const Wrench& wrench) noexcept override;
     void stop() noexcept override;
 
-    // On the thread that reads:
-    dvec3 position() const { return position_; }  // m, at the last read, whatever the resolution
+    // For the thread that reads:
+    dvec3 position() const { return position_; }  // m, at the last read, not quantised
     dvec3 velocity() const { return velocity_; }  // m/s
     vec3 force() const;                           // N, that acts now
 
  private:
-    // A force, and how often the device had been stopped when it was written: a later stop() makes it none.
+    // A force, and how often the device had been stopped when it was written: a later stop() cancels it.
     struct Written {
         double from = 0;  // s since the first read
         vec3 force = vec3(0);
@@ -56,11 +57,11 @@ class VirtualHand final : public Device {
 
     Path plan_;
     VirtualHandSettings settings_;
-    std::optional<double> start_;  // of the loop's clock
+    std::optional<double> start_;  // on the loop's clock
     double time_ = 0;              // s since then
     dvec3 position_ = dvec3(0), velocity_ = dvec3(0);
     Written acting_;                // that acts
-    std::vector<Written> waiting_;  // a ring: the delayed ones, in their order
+    std::vector<Written> waiting_;  // a ring buffer of the delayed forces, in order
     std::size_t first_ = 0, count_ = 0;
     std::atomic<unsigned> stops_ = 0;
 };
