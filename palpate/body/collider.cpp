@@ -14,7 +14,7 @@ float DistanceField::at(vec3 p) const {
     if (std::min({dims.x, dims.y, dims.z}) < 2)
         throw Error("fewer than 2 points along an axis", "a distance field", "give it more");
     const vec3 way = (p - origin) / spacing;
-    vec3 place;  // a motion that blows up brings points that are no numbers: they count as the first corner
+    vec3 place;  // a motion that diverges brings points that are not finite: they count as the first corner
     for (int k = 0; k < 3; ++k) place[k] = way[k] > 0 ? std::min(way[k], float(dims[k] - 1)) : 0;
     const ivec3 cell = glm::min(ivec3(place), dims - 2);
     const vec3 part = place - vec3(cell);
@@ -27,7 +27,7 @@ float DistanceField::at(vec3 p) const {
     return sum;
 }
 
-vec3 DistanceField::uphill(vec3 p) const {
+vec3 DistanceField::gradient(vec3 p) const {
     const float h = 0.5f * spacing;
     auto across = [&](vec3 way) { return at(p + way) - at(p - way); };
     return {across({h, 0, 0}), across({0, h, 0}), across({0, 0, h})};

@@ -1,5 +1,5 @@
-// Carries surfaces along: mapping.inl for as many vertices at once as a register holds floats, compiled once
-// for each instruction set.
+// Maps surfaces: mapping.inl for as many vertices at once as a SIMD register holds floats, compiled once for
+// each instruction set.
 #include "palpate/base/error.h"
 #include "palpate/base/team.h"
 #include "palpate/body/embedding_parts.h"
@@ -20,13 +20,13 @@
 #define PALPATE_BODY_DEFORM
 namespace palpate {
 
-// What there is to do.
-struct Carrying {
+// The inputs and outputs of one mapping.
+struct MappingWork {
     const Embedding& embedding;
-    const vec4 *positions, *normals;  // of nodes, with room for a fourth
-    const mat4* frames;               // the gradient at each, and where its node is
+    const vec4 *positions, *normals;  // of nodes, padded to four floats
+    const mat4* frames;               // the deformation gradient at each, and the position of its node
     vec3 *to_positions, *to_normals;
-    vec4* to_tangents;  // null: not asked for
+    vec4* to_tangents;  // null: not wanted
 };
 
 }  // namespace palpate
@@ -46,18 +46,18 @@ struct Text {
 #include "palpate/body/mapping.inl"
 };
 
-// Vertices side by side: those from `first` on, or as many as there are before `end` and the last again and
-// again.
+// As many vertices as there are lanes, from `first` on; past `end` the last one is repeated.
 template <class Vertex>
 class Lanewise : Text {
  public:
-    FN Lanewise(const Carrying& work, const std::vector<Vertex>& vertices, std::size_t first, std::size_t end)
+    FN Lanewise(const MappingWork& work, const std::vector<Vertex>& vertices, std::size_t first,
+                std::size_t end)
         : work_(work), vertices_(vertices.data()), first_(first), end_(end) {}
 
-    FN void carry() {
-        if constexpr (std::is_same_v<Vertex, InCell>) carry_in_cells();
-        if constexpr (std::is_same_v<Vertex, OnTriangle>) carry_on_triangles();
-        if constexpr (std::is_same_v<Vertex, OnFrames>) carry_on_frames();
+    FN void map_vertices() {
+        if constexpr (std::is_same_v<Vertex, InCell>) map_in_cells();
+        if constexpr (std::is_same_v<Vertex, OnTriangle>) map_on_triangles();
+        if constexpr (std::is_same_v<Vertex, OnFrames>) map_on_frames();
     }
 
  private:
@@ -72,16 +72,16 @@ class Lanewise : Text {
         return load_each([&](std::size_t lane) HWY_ATTR { return &from[index(vertex(lane))].x; });
     }
 
-    FN void carry_in_cells() {
+    FN void map_in_cells() {
         Pack3 corner[8];
         for (std::size_t k = 0; k < 8; ++k)
             corner[k] = each(work_.positions, [k](const InCell& v) HWY_ATTR { return v.nodes[k]; });
         const Pack3 at = each(&InCell::at), n = each(&InCell::normal);
-        const Followed f = in_cell(corner, at.x, at.y, at.z);
+        const MappedVertex f = in_cell(corner, at.x, at.y, at.z);
         put(f, normal_by_cofactors(f, n.x, n.y, n.z, n));
     }
 
-    FN void carry_on_triangles() {
+    FN void map_on_triangles() {
         Pack3 node[3], approximate(0.0f, 0.0f, 0.0f);
         const Pack3 weights = each(&OnTriangle::weights);
         const Pack w[3] = {weights.x, weights.y, weights.z};
@@ -96,7 +96,7 @@ class Lanewise : Text {
             node[k] = each(work_.positions, index);
             if (!flat) approximate += w[k] * clear_direction(each(work_.normals, index));
         }
-        Followed f =
+        MappedVertex f =
             on_triangle(node[0], node[1], node[2], approximate, ::palpate::HWY_NAMESPACE::load(curvatures));
         const Pack3 offset = each(&OnTriangle::offset), n = each(&OnTriangle::normal);
         f.position =
@@ -104,10 +104,10 @@ class Lanewise : Text {
         put(f, direction(expand(f, n.x, n.y, n.z), f.y));
     }
 
-    FN void carry_on_frames() {
+    FN void map_on_frames() {
         const Pack3 weights = each(&OnFrames::weights), n = each(&OnFrames::normal);
         const Pack w[3] = {weights.x, weights.y, weights.z};
-        Followed f;
+        MappedVertex f;
         f.position = f.x = f.y = f.z = Pack3(0.0f, 0.0f, 0.0f);
         for (std::size_t k = 0; k < 3; ++k) {
             const Pack3 arm = load_each([&](std::size_t lane) HWY_ATTR { return &vertex(lane).arms[k].x; });
@@ -124,7 +124,7 @@ class Lanewise : Text {
         put(f, normal_by_cofactors(f, n.x, n.y, n.z, n));
     }
 
-    FN void put(const Followed& f, Pack3 normal) {
+    FN void put(const MappedVertex& f, Pack3 normal) {
         write(f.position, work_.to_positions);
         write(normal, work_.to_normals);
         if (!work_.to_tangents) return;
@@ -143,25 +143,26 @@ class Lanewise : Text {
         std::memcpy(&to[first_], some, (end_ - first_) * sizeof(vec3));
     }
 
-    const Carrying& work_;
+    const MappingWork& work_;
     const Vertex* vertices_;
     std::size_t first_, end_;
 };
 
 template <class Vertex>
-void carry_all(const Carrying& work, const std::vector<Vertex>& vertices, std::size_t first,
-               std::size_t end) {
-    for (std::size_t i = first; i < end; i += lanes()) Lanewise<Vertex>(work, vertices, i, end).carry();
+void map_all(const MappingWork& work, const std::vector<Vertex>& vertices, std::size_t first,
+             std::size_t end) {
+    for (std::size_t i = first; i < end; i += lanes())
+        Lanewise<Vertex>(work, vertices, i, end).map_vertices();
 }
 
-// The vertices from one to before another.
-void carry(const Carrying& work, std::size_t first, std::size_t end) {
+// Maps the vertices `first` <= i < `end`.
+void map_vertices(const MappingWork& work, std::size_t first, std::size_t end) {
     if (const auto* framed = std::get_if<Framed>(&work.embedding.vertices))
-        carry_all(work, framed->vertices, first, end);
+        map_all(work, framed->vertices, first, end);
     if (const auto* in_cells = std::get_if<std::vector<InCell>>(&work.embedding.vertices))
-        carry_all(work, *in_cells, first, end);
+        map_all(work, *in_cells, first, end);
     if (const auto* on = std::get_if<std::vector<OnTriangle>>(&work.embedding.vertices))
-        carry_all(work, *on, first, end);
+        map_all(work, *on, first, end);
 }
 
 }  // namespace palpate::HWY_NAMESPACE
@@ -171,7 +172,7 @@ HWY_AFTER_NAMESPACE();
 namespace palpate {
 namespace {
 
-HWY_EXPORT(carry);
+HWY_EXPORT(map_vertices);
 
 std::size_t count(const Embedding& embedding) {
     if (const auto* framed = std::get_if<Framed>(&embedding.vertices)) return framed->vertices.size();
@@ -191,13 +192,13 @@ std::vector<vec4> with_room(std::span<const vec3> vectors) {
     return list;
 }
 
-// A vector in one register: the compiler makes no more of three floats.
+// A vector in one SIMD register: the compiler does not vectorise three floats.
 using Four [[gnu::vector_size(16)]] = float;
 Four four(const vec4& v) { return Four{v.x, v.y, v.z, v.w}; }
 Four four(vec3 v) { return Four{v.x, v.y, v.z, 0}; }
 vec4 back(Four v) { return {v[0], v[1], v[2], v[3]}; }
 
-// The gradient of the deformation at frames from one to before another, and where their nodes are.
+// Finds the deformation gradients at frames `first` <= i < `end`, and the positions of their nodes.
 void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size_t first, std::size_t end,
                  std::vector<mat4>& to) {
     for (std::size_t i = first; i < end; ++i) {
@@ -214,7 +215,7 @@ void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size
             add(four(nodes[std::size_t(spoke.to)]) - four(here), spoke.pull);
         }
         if (faces < frame.faces_end) {
-            vec3 sum(0);  // of the faces' normals, each by its area
+            vec3 sum(0);  // of the face normals, weighted by area
             for (int f = faces; f < frame.faces_end; ++f) {
                 const auto [a, b, c] = framed.faces[std::size_t(f)];
                 const vec3 corner(nodes[std::size_t(a)]);
@@ -231,11 +232,12 @@ void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size
 void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
             std::vector<vec3>& normals, std::vector<vec4>* tangents, Team* team) {
     if (nodes.positions.size() < embedding.nodes)
-        throw Error(fmt::format("{} nodes of a body that has {}", nodes.positions.size(), embedding.nodes),
-                    "the surface that hangs on it", "hand in all of them");
+        throw Error(
+            fmt::format("{} nodes instead of the {} of the body", nodes.positions.size(), embedding.nodes),
+            "the surface that follows them", "hand in all of them");
     if (nodes.normals.size() < embedding.nodes && needs_normals(embedding))
-        throw Error("no approximate normals for a mapping that needs them", "the surface that is deformed",
-                    "hand in Solver::nodes(), or approximate_normals()");
+        throw Error("the approximate normals are missing that the mapping needs",
+                    "the surface that is deformed", "hand in Solver::nodes(), or approximate_normals()");
     const std::size_t vertices = count(embedding);
     positions.resize(vertices);
     normals.resize(vertices);
@@ -246,13 +248,13 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
                             facing = with_room(on_triangles ? nodes.normals : std::span<const vec3>());
     std::vector<mat4> frames(framed ? framed->frames.size() : 0);
     const bool with_tangents = tangents && !tangents->empty();
-    const Carrying work{embedding,
-                        at.data(),
-                        facing.data(),
-                        frames.data(),
-                        positions.data(),
-                        normals.data(),
-                        with_tangents ? tangents->data() : nullptr};
+    const MappingWork work{embedding,
+                           at.data(),
+                           facing.data(),
+                           frames.data(),
+                           positions.data(),
+                           normals.data(),
+                           with_tangents ? tangents->data() : nullptr};
     const std::size_t members = std::size_t(team ? team->members() : 1);
     auto share = [&](int member) {
         auto part = [&](std::size_t all) { return all * std::size_t(member) / members; };
@@ -261,7 +263,7 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
             find_frames(*framed, at, part(frames.size()), next(frames.size()), frames);
             if (team) team->meet();
         }
-        HWY_DYNAMIC_DISPATCH(carry)(work, part(vertices), next(vertices));
+        HWY_DYNAMIC_DISPATCH(map_vertices)(work, part(vertices), next(vertices));
     };
     if (team)
         team->run(share);

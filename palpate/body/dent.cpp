@@ -11,7 +11,7 @@ using std::exp;
 #define FN
 #define select(c, a, b) ((c) ? (a) : (b))
 
-// The text, for dents of which those that do not act have no depth.
+// dent.inl for C++. Dents that do not act are given depth 0.
 struct Text {
     using Real = float;
     using Real3 = vec3;
@@ -50,7 +50,7 @@ vec3 dented_normal(std::span<const Dent> dents, vec3 place, vec3 normal) {
 
 double deepest_dent(double width) { return 1.2 * width; }
 
-float furthest(std::span<const Dent> dents) {
+float largest_displacement(std::span<const Dent> dents) {
     float sum = 0;
     for (const Dent& dent : dents) sum += acts(dent) ? std::abs(dent.depth) : 0;
     return sum;

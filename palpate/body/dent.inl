@@ -1,8 +1,8 @@
-// dent.inl: what dents make of a surface, written once for C++ and GLSL (Luciano, Banerjee and Rizzi 2007,
+// dent.inl: how Gaussian dents deform a surface, written once for C++ and GLSL (Luciano, Banerjee and Rizzi 2007,
 // section IV).
 //
-// The words are GLSL's; C++ brings the same ones (cross, dot, exp, normalize). In C++ this file is included
-// inside a struct, in GLSL at global scope, and finds there:
+// Functions have GLSL's names, which C++ supplies as well (cross, dot, exp, normalize). In C++ this file is included
+// inside a struct, in GLSL at global scope. It uses from there:
 //   FN              what stands before a function
 //   Real, Real3     a number, a vector
 //   select(c, a, b) a where c holds, b elsewhere
@@ -11,18 +11,18 @@
 // Places are always those of the surface without dents, so that all stages of a shader measure in the same
 // space.
 
-// How many widths from the middle of dent i.
+// The vector from the centre of dent i, in widths.
 FN Real3 widths_away(int i, Real3 place) { return (place - dent(i).centre) * (Real(1.0f) / dent(i).width); }
 
 FN Real depth_of(int i, Real3 away) { return dent(i).depth * exp(Real(-0.5f) * dot(away, away)); }
 
-// Against which way dent i moves a place.
+// The direction against which dent i moves a place.
 FN Real3 facing_of(int i, Real3 normal) {
     Real3 facing = dent(i).facing;
     return select(dot(facing, facing) > Real(0.0f), facing, normal);
 }
 
-// How far, and which way, all of them move a place.
+// The displacement of a place by all dents.
 FN Real3 moved(Real3 place, Real3 normal) {
     Real3 sum = Real3(0.0f, 0.0f, 0.0f);
     for (int i = 0; i < dent_count; ++i) sum -= depth_of(i, widths_away(i, place)) * facing_of(i, normal);
@@ -33,10 +33,10 @@ FN Real depth_at(Real3 place, Real3 normal) { return -dot(moved(place, normal), 
 
 FN Real3 dented(Real3 place, Real3 normal) { return place + moved(place, normal); }
 
-// By the cofactors of the motion's Jacobian, whose columns are x, y and z: exact where dents say which way
-// they face. Where they move a surface along its own normals, those count as parallel; this is the paper's
-// rotation then, without an angle, and without its axis, which has no direction at the contact. Dents too far
-// off to matter leave the normal as it is, and so do those so deep that nothing is left of the surface.
+// The normal transforms by the cofactors of the Jacobian of the displacement, whose columns are x, y and z. That is
+// exact for dents with `facing`. For dents along the surface's own normals, these are taken to be parallel; this
+// equals the paper's rotation, but needs neither its angle nor its axis, which is undefined at the contact. The
+// normal stays as it is if the dents are too far away to matter, or so deep that the Jacobian is degenerate.
 FN Real3 dented_normal(Real3 place, Real3 normal) {
     Real3 x = Real3(1.0f, 0.0f, 0.0f), y = Real3(0.0f, 1.0f, 0.0f), z = Real3(0.0f, 0.0f, 1.0f);
     for (int i = 0; i < dent_count; ++i) {

@@ -13,7 +13,7 @@ namespace {
 void check(const Body& body, Mapping mapping) {
     if (!body.cells.empty()) return;
     if (mapping == Mapping::trilinear)
-        throw Error("no cell for the trilinear mapping to hang a surface in", name_in_errors(body),
+        throw Error("no cells for the trilinear mapping", name_in_errors(body),
                     "use the mapping frames, or a lattice at least two nodes thick along each axis");
     if (body.faces.empty())
         throw Error("a body with neither filled cells nor faces", name_in_errors(body),
@@ -21,7 +21,8 @@ void check(const Body& body, Mapping mapping) {
                     "faces");
 }
 
-// A box's longest side turned by 90° from end to end, or bent by as much towards its shortest.
+// Two trial deformations of a box: twisted by 90° along its longest side, or bent by as much towards its
+// shortest.
 class Trial {
  public:
     explicit Trial(const Bounds& box) : middle_(box.centre()) {
@@ -56,8 +57,8 @@ class Trial {
     float rate_;  // 1/m
 };
 
-// Where a motion of all space takes a surface that hovers over a sheet: it counts where the sheet goes, and
-// each vertex stays as high, straight over the same place. The rest no sheet can know.
+// The ideal positions of a surface over a sheet when all space is deformed: each vertex keeps its height over
+// the same place of the deformed sheet, along its normal. The sheet cannot determine more than that.
 template <class Motion>
 std::vector<vec3> carried_by(Motion motion, const Mesh& surface, const Body& body) {
     std::vector<vec3> moved;
@@ -68,14 +69,14 @@ std::vector<vec3> carried_by(Motion motion, const Mesh& surface, const Body& bod
         const vec3 n = facet.normal;
         const float height = glm::dot(v - body.positions[facet.nodes[0]], n), step = 0.05f * body.spacing;
         const vec3 foot = v - height * n;
-        const vec3 x = glm::normalize(any_across(n)), y = glm::cross(n, x);
+        const vec3 x = glm::normalize(any_perpendicular(n)), y = glm::cross(n, x);
         auto slope = [&](vec3 along) { return motion(foot + step * along) - motion(foot - step * along); };
         moved.push_back(motion(foot) + height * direction(glm::cross(slope(x), slope(y)), n));
     }
     return moved;
 }
 
-// How far a surface is from there when the motion takes the nodes, squared and summed.
+// The squared error, summed over vertices, of a surface whose nodes are moved by the motion.
 template <class Motion>
 double misfit(const Mesh& surface, const Body& body, const Embedding& skin, Motion motion) {
     std::vector<vec3> nodes, positions, normals;
@@ -91,9 +92,9 @@ double misfit(const Mesh& surface, const Body& body, const Embedding& skin, Moti
     return sum;
 }
 
-// On sheets no mapping is always the best: frames on fine ones, the interpolated basis where few nodes carry
-// much surface. So each is tried on a twist and a bend of this surface. Frames must do better than the
-// paper's in both; else the paper's that does better in all is taken.
+// On sheets no mapping is always the best: frames do best on fine ones, the interpolated basis where there
+// are few nodes. So each is tried on a twist and a bend of this surface. Frames must beat both mappings of
+// the paper in both trials; otherwise the one of those two with the smaller total error is taken.
 Embedding embed_by_trial(const Mesh& surface, const Body& body) {
     const Trial trial(bounds(surface));
     struct Tried {
@@ -127,7 +128,8 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping) {
         return embed(with_normals, body, mapping);
     }
     if (mapping == Mapping::automatic && body.fan > 0) return embed_by_trial(surface, body);
-    // Round a solid, bases of triangles open seams where neighbours hang on different sides; frames do not.
+    // Around a solid, bases of triangles open seams where neighbouring vertices are attached to different
+    // sides; frames do not.
     if (mapping == Mapping::automatic) mapping = body.cells.empty() ? Mapping::frames : Mapping::trilinear;
     const bool has_tangents = surface.tangents.size() == surface.positions.size();
     const std::vector<vec4> tangents = has_tangents ? surface.tangents : std::vector<vec4>();

@@ -3,33 +3,33 @@
 namespace palpate {
 namespace {
 
-using Followed = MappingText::Followed;
+using MappedVertex = MappingText::MappedVertex;
 
-// How a vertex at `at` in a cell follows it at rest, and the gradient there: how far a cell's width leads
-// along each of its axes, m. In double, so that cells may be as small or as large as floats can say.
-Followed follow_at_rest(const Body& body, const std::array<int, 8>& nodes, vec3 at) {
+// A vertex at `at` in a cell at rest, and the Jacobian there: the derivatives of its position by `at`, m. In
+// double, so that cells may have any size that a float can hold.
+MappedVertex follow_at_rest(const Body& body, const std::array<int, 8>& nodes, vec3 at) {
     vec3 corners[8];
     for (std::size_t k = 0; k < 8; ++k) corners[k] = body.positions[std::size_t(nodes[k])];
     return MappingText::in_cell(corners, at.x, at.y, at.z);
 }
-dmat3 gradient(const Followed& f) { return {dvec3(f.x), dvec3(f.y), dvec3(f.z)}; }
+dmat3 gradient(const MappedVertex& f) { return {dvec3(f.x), dvec3(f.y), dvec3(f.z)}; }
 
-// Where a place is in a cell: from its middle by Newton's steps, of which the first leads there in a cell
-// whose edges are parallel, as all of a grid's are, however it lies turned.
+// The coordinates of a place in a cell: inverts the trilinear map by Newton's method from the cell's centre.
+// One step suffices for a parallelepiped, as all cells of a grid are, in any orientation.
 vec3 place_in(const Body& body, const std::array<int, 8>& nodes, vec3 place) {
     vec3 at(0.5f);
     for (int step = 0; step < 4; ++step) {
-        const Followed there = follow_at_rest(body, nodes, at);
+        const MappedVertex there = follow_at_rest(body, nodes, at);
         if (glm::determinant(gradient(there)) == 0) break;
         at += vec3(glm::inverse(gradient(there)) * (dvec3(place) - dvec3(there.position)));
     }
     return at;
 }
 
-// A normal and a tangent along the axes of a cell, so that deform() gives back the same at rest: it carries
-// normals by the cofactors of the gradient, tangents by the gradient itself.
+// A normal and a tangent in the axes of a cell, such that deform() reproduces them at rest: it transforms
+// normals by the cofactors of the Jacobian, tangents by the Jacobian itself.
 vec3 normal_in(const dmat3& gradient, vec3 n) {
-    const double side = glm::determinant(gradient) < 0 ? -1 : 1;  // of a cell that is its mirror image
+    const double side = glm::determinant(gradient) < 0 ? -1 : 1;  // -1 for a mirrored cell
     const dvec3 in_cell = side * (glm::transpose(gradient) * dvec3(n));
     return glm::length(in_cell) > 0 ? vec3(glm::normalize(in_cell)) : n;
 }
@@ -39,20 +39,20 @@ vec3 tangent_in(const dmat3& gradient, vec3 t) {
     return glm::length(in_cell) > 0 ? vec3(glm::normalize(in_cell)) : t;
 }
 
-// The nearest cell to a vertex; of cells about as near, the one nearest to a point half a cell inside, so
-// that the far wall of a gap is not taken for the near one.
+// Finds the nearest cell to a vertex; among cells about as near, the one nearest to a point half a cell
+// inside the surface, so that the opposite wall of a gap is not chosen.
 class NearestCell {
  public:
     explicit NearestCell(const Body& body)
         : body_(body),
           edges_(cell_edges(body)),
           inverse_(glm::inverse(dmat3(edges_))),
-          nearby_(boxes(body)) {}
+          box_grid_(boxes(body)) {}
 
     const std::array<int, 8>& operator()(vec3 v, vec3 n) const {
         const vec3 inside = v - 0.5f * body_.spacing * n;
         const int best =
-            nearby_.best(v, [&](int c, float) { return distance(v, c) + 0.25f * distance(inside, c); });
+            box_grid_.best(v, [&](int c, float) { return distance(v, c) + 0.25f * distance(inside, c); });
         return body_.cells[std::size_t(best)];
     }
 
@@ -71,7 +71,7 @@ class NearestCell {
 
     const Body& body_;
     const mat3 edges_, inverse_;
-    const Nearby nearby_;
+    const BoxGrid box_grid_;
 };
 
 }  // namespace

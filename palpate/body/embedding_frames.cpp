@@ -3,7 +3,7 @@
 namespace palpate {
 namespace {
 
-// The sum of the faces' normals round a node: each by its area.
+// The sum of the face normals around a node, weighted by area.
 vec3 normal_round(std::span<const std::array<int, 3>> faces, std::span<const vec3> positions) {
     vec3 sum(0);
     for (const auto& [a, b, c] : faces)
@@ -11,9 +11,8 @@ vec3 normal_round(std::span<const std::array<int, 3>> faces, std::span<const vec
     return direction(sum, vec3(0));
 }
 
-// How evenly a set of vectors points all round, from their moments: the geometric mean of the three widths'
-// squares over their arithmetic mean. 1 for a ball, 0 in a plane; 0.5 where one square is a thirtieth of the
-// others.
+// How isotropic a set of vectors is: the geometric mean of the eigenvalues of their moment matrix over the
+// arithmetic mean. 1 if isotropic, 0 in a plane; 0.5 if one eigenvalue is a thirtieth of the others.
 double roundness(const dmat3& moments) {
     const double mean = (moments[0][0] + moments[1][1] + moments[2][2]) / 3;
     return mean > 0 ? std::cbrt(std::max(glm::determinant(moments), 0.0)) / mean : 0;
@@ -27,7 +26,7 @@ class FrameMaker {
             for (int node : f.nodes) facets_at_[node].push_back(f.nodes);
     }
 
-    // The frame of a node; made when first asked for.
+    // The frame of a node; made on first use.
     int frame(int node, Framed& framed) {
         int& number = frame_of_[node];
         if (number < 0) {
@@ -38,9 +37,9 @@ class FrameMaker {
     }
 
  private:
-    // The neighbours of a node, each with its rest vector by its share. Near ones count for much more than
-    // far ones, by the fourth power of the distance, since what those tell belongs half way to them: at a rim
-    // all of them are on one side.
+    // The neighbours of a node, each with its rest vector weighted by its share over the fourth power of the
+    // distance. So near ones dominate: what a neighbour tells holds half way to it, and at a rim all are on
+    // one side.
     std::vector<Spoke> neighbours(int node) const {
         std::vector<Spoke> list;
         auto add = [&](int to, float share) {
@@ -52,7 +51,7 @@ class FrameMaker {
         };
         for (const Tie& tie : springs_.of(node))
             if (tie.to >= 0 && tie.share > 0) add(tie.to, tie.share);
-        // A net's faces may have sides that are no springs.
+        // The edges of a net's faces need not be springs.
         if (body_.cells.empty())
             for (const auto& corners : facets_at_[node])
                 for (int to : corners) add(to, 1);
@@ -67,14 +66,15 @@ class FrameMaker {
             moments += glm::outerProduct(dvec3(s.pull), toward);
         }
         const double size = (moments[0][0] + moments[1][1] + moments[2][2]) / 3;
-        // A sheet's springs lie in a plane, or near one: there the normal of the faces makes up one more.
+        // The springs of a sheet lie nearly in a plane: there the normal of the faces serves as one more
+        // spring.
         dvec3 normal(0);
         if (body_.fan > 0 || roundness(moments) < 0.5) {
             framed.faces.insert(framed.faces.end(), facets_at_[node].begin(), facets_at_[node].end());
             normal = normal_round(facets_at_[node], body_.positions);
         }
         const dmat3 whole = moments + size * glm::outerProduct(normal, normal);
-        // So little that it only matters where nothing else is known in some direction.
+        // A regularisation so small that it only matters in directions where nothing else is known.
         const dmat3 inverse = glm::inverse(whole + (1e-9 * size + 1e-30) * dmat3(1));
         for (Spoke& s : spokes) s.pull = vec3(inverse * dvec3(s.pull));
         framed.spokes.insert(framed.spokes.end(), spokes.begin(), spokes.end());
@@ -99,9 +99,9 @@ Framed embed_on_frames(const Mesh& surface, const Body& body) {
         const vec3 v = surface.positions[i];
         const Facet& facet = outside.nearest(v, surface.normals[i]);
         OnFrames vertex{outside.weights(facet, v), {}, surface.normals[i], {}};
-        // The arms begin half way from a node to the place under the vertex, not at the node: then the
-        // frames together follow a curved sheet to the second order. (Whole ways bulge by as much as the flat
-        // triangle sinks.) For affine motions it is the same.
+        // The arms begin half way from a node to the place under the vertex, not at the node: then the blend
+        // follows a curved sheet to second order. (Full arms would bulge by as much as the flat triangle
+        // sags.) For affine motions both are the same.
         const vec3 foot = outside.point(facet, vertex.weights);
         for (int k = 0; k < 3; ++k) {
             vertex.frames[k] = maker.frame(facet.nodes[k], framed);

@@ -1,5 +1,5 @@
 #pragma once
-// What the parts of embedding.cpp share.
+// Shared by the parts of embedding.cpp.
 #include "palpate/body/embedding.h"
 #include "palpate/mesh/triangle.h"
 
@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// mapping.inl for one vertex after the other.
+/// mapping.inl for one vertex at a time.
 template <class Number>
 struct MappingIn {
     using Real = Number;
@@ -30,25 +30,25 @@ struct MappingIn {
 using MappingText = MappingIn<float>;
 
 inline vec3 direction(vec3 v, vec3 otherwise) { return MappingText::direction(v, otherwise); }
-inline vec3 any_across(vec3 n) { return MappingText::any_across(n); }
+inline vec3 any_perpendicular(vec3 n) { return MappingText::any_perpendicular(n); }
 
-/// A triangle of a body's outside.
+/// A triangle of a body's boundary surface.
 struct Facet {
     std::array<int, 3> nodes;  // counter-clockwise seen from outside
     vec3 normal;               // at rest
 };
 
-/// The hull of a body's cells, or where it has none its faces.
+/// The hull of a body's cells, or its faces if it has no cells.
 std::vector<Facet> facets(const Body& body);
 
-/// Boxes sorted into a grid, to find the best one near a point.
-class Nearby {
+/// Bounding boxes in a uniform grid, for a nearest-neighbour search.
+class BoxGrid {
  public:
-    /// Of no boxes at all nothing may be asked.
-    explicit Nearby(std::span<const Bounds> boxes);
+    /// There must be at least one box to search.
+    explicit BoxGrid(std::span<const Bounds> boxes);
 
-    /// The box with the least cost(index, least), which is never below the distance from the point to that
-    /// box. `least`: that of the best so far; where a box cannot be better, any larger cost will do.
+    /// The box with the least cost(index, least), which must be at least the distance from the point to the
+    /// box. `least`: the least cost so far; for a box that cannot beat it, any larger cost will do.
     template <class Cost>
     int best(vec3 point, Cost cost) const {
         const ivec3 centre = bucket_of(point);
@@ -69,13 +69,13 @@ class Nearby {
     }
 
  private:
-    // The bucket that a point is in, or the nearest to it.
+    // The bucket that a point is in, or the nearest one.
     ivec3 bucket_of(vec3 point) const {
         return ivec3(glm::clamp((point - origin_) / size_, vec3(0), vec3(dims_ - 1)));
     }
     std::size_t slot(ivec3 b) const { return (std::size_t(b.z) * dims_.y + b.y) * dims_.x + b.x; }
 
-    // The buckets at exactly this distance from the centre, counting diagonals as one.
+    // The buckets at exactly this Chebyshev distance from the centre.
     template <class Visit>
     void shell(ivec3 centre, int reach, Visit visit) const {
         const ivec3 low = glm::max(centre - reach, ivec3(0)), high = glm::min(centre + reach, dims_ - 1);
@@ -90,23 +90,23 @@ class Nearby {
     void for_each_bucket(const Bounds& box, Visit visit) const;
 
     vec3 origin_;
-    float size_;  // of a bucket: about that of the boxes
+    float size_;  // of a bucket: about the size of the boxes
     ivec3 dims_;
-    std::vector<int> begins_, items_;  // of each bucket, where its items begin; the items
+    std::vector<int> begins_, items_;  // where the items of each bucket begin; the items
 };
 
-/// The outside of a body at rest, and where on it a vertex belongs.
+/// The boundary surface of a body at rest, with a search for the facet to which a vertex belongs.
 class Outside {
  public:
     explicit Outside(const Body& body);
 
-    /// The best facet for a vertex v with normal n, by distance(facet, least), with `least` as above; never
-    /// below the distance from v to that facet.
+    /// The best facet for a vertex v with normal n, by distance(facet, least), with `least` as above; it must
+    /// be at least the distance from v to the facet.
     template <class Distance>
     const Facet& best(vec3 v, vec3 n, Distance distance) const {
-        return facets_[nearby_.best(v, [&](int i, float least) {
-            // A triangle that faces away from the vertex's own side belongs to the other wall of a gap: it
-            // counts as two cells further off. A sheet is both walls.
+        return facets_[box_grid_.best(v, [&](int i, float least) {
+            // A triangle that faces away from the vertex's own side belongs to the opposite wall of a gap: it
+            // counts as two cells farther away. A sheet is both walls.
             const bool wrong_side = body_.fan == 0 && !(glm::dot(n, facets_[i].normal) > 0);
             const float further = wrong_side ? 2 * body_.spacing : 0;
             return distance(facets_[i], least - further) + further;
@@ -114,7 +114,7 @@ class Outside {
     }
     const Facet& nearest(vec3 v, vec3 n) const;
 
-    /// Weights of the nearest place on a facet.
+    /// Barycentric weights of the nearest place on a facet.
     vec3 weights(const Facet& facet, vec3 v) const {
         const auto [a, b, c] = facet.nodes;
         return nearest_weights(v, body_.positions[a], body_.positions[b], body_.positions[c]);
@@ -132,16 +132,16 @@ class Outside {
  private:
     const Body& body_;
     std::vector<Facet> facets_;
-    Nearby nearby_;
+    BoxGrid box_grid_;
 };
 
-// The mappings, each with its way to hang a surface (which has normals) and to place a vertex.
+// Each mapping's way to embed a surface, which must have normals.
 
 std::vector<InCell> embed_in_cells(const Mesh& surface, const Body& body);
 std::vector<OnTriangle> embed_on_triangles(const Mesh& surface, const Body& body, Mapping mapping);
 Framed embed_on_frames(const Mesh& surface, const Body& body);
 
-/// Tangents of the surface in the cells, or in the bases, of the vertices at rest.
+/// The tangents of the surface at rest, in the axes of the vertices' cells, or in their bases.
 std::vector<vec4> tangents_in(std::span<const InCell> vertices, const Body& body,
                               const std::vector<vec4>& tangents);
 std::vector<vec4> tangents_in(std::span<const OnTriangle> vertices, const Body& body,

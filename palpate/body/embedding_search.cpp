@@ -4,7 +4,7 @@
 namespace palpate {
 namespace {
 
-// Buckets may be at most so many times the boxes, however unlike their sizes.
+// The most buckets per box, however unlike the sizes of the boxes.
 constexpr double most_buckets = 16;
 
 std::vector<Bounds> boxes_of(std::span<const Facet> facets, const Body& body) {
@@ -36,9 +36,9 @@ std::vector<Facet> facets(const Body& body) {
 }
 
 template <class Visit>
-void Nearby::for_each_bucket(const Bounds& box, Visit visit) const {
+void BoxGrid::for_each_bucket(const Bounds& box, Visit visit) const {
     const ivec3 low = bucket_of(box.low);
-    // A box that ends at a bucket's border is not in the next one.
+    // A box that ends on the border of a bucket is not in the next one.
     const ivec3 high = glm::max(low, ivec3(glm::ceil((box.high - origin_) / size_)) - 1);
     const ivec3 end = glm::min(high, dims_ - 1);
     for (int z = low.z; z <= end.z; ++z)
@@ -46,7 +46,7 @@ void Nearby::for_each_bucket(const Bounds& box, Visit visit) const {
             for (int x = low.x; x <= end.x; ++x) visit(slot({x, y, z}));
 }
 
-Nearby::Nearby(std::span<const Bounds> boxes) {
+BoxGrid::BoxGrid(std::span<const Bounds> boxes) {
     Bounds all;
     for (const Bounds& box : boxes) all.include(box.low), all.include(box.high);
     const double extent = std::max({all.size().x, all.size().y, all.size().z});
@@ -68,7 +68,7 @@ Nearby::Nearby(std::span<const Bounds> boxes) {
         for_each_bucket(boxes[i], [&](std::size_t b) { items_[next[b]++] = int(i); });
 }
 
-Outside::Outside(const Body& body) : body_(body), facets_(facets(body)), nearby_(boxes_of(facets_, body)) {}
+Outside::Outside(const Body& body) : body_(body), facets_(facets(body)), box_grid_(boxes_of(facets_, body)) {}
 
 const Facet& Outside::nearest(vec3 v, vec3 n) const {
     return best(v, n, [&](const Facet& f, float) { return distance(f, v); });

@@ -3,7 +3,7 @@
 namespace palpate {
 namespace {
 
-using Basis = MappingText::Followed;
+using Basis = MappingText::MappedVertex;
 
 Basis basis(const OnTriangle& vertex, const Nodes& nodes) {
     const auto [a, b, c] = vertex.nodes;
@@ -23,13 +23,13 @@ vec3 reference(const OnTriangle& vertex, std::span<const vec3> nodes) {
     return sum;
 }
 
-// Hangs vertices on the outside of a body at rest.
+// Attaches vertices to the boundary surface of a body at rest.
 class Hanger {
  public:
     explicit Hanger(const Body& body)
         : body_(body), outside_(body), approximate_(approximate_normals(body, body.positions)) {}
 
-    // On the nearest node: the triangle at it only lends its sides to tangents.
+    // At the nearest node: the triangle at it is needed for tangents only.
     OnTriangle on_node(vec3 v, vec3 n) const {
         const Facet& facet = outside_.best(v, n, [&](const Facet& f, float) {
             return glm::distance(v, outside_.point(f, nearest_corner(f, v)));
@@ -46,8 +46,8 @@ class Hanger {
         return vertex;
     }
 
-    // Where the interpolated normal meets the vertex. What remains aside of it, where no place of the outside
-    // has the vertex on its normal, is lost.
+    // At the place whose interpolated normal meets the vertex. If there is no such place on the boundary
+    // surface, the sideways remainder is lost.
     OnTriangle straight_under(vec3 v, vec3 n) const {
         const Facet& facet = outside_.best(v, n, [&](const Facet& f, float least) {
             if (const float near = outside_.distance(f, v); near >= least) return near;
@@ -63,7 +63,7 @@ class Hanger {
  private:
     Nodes rest() const { return {body_.positions, approximate_}; }
 
-    // The corner of a facet nearest to v, as weights.
+    // The barycentric weights of the facet's corner that is nearest to v.
     vec3 nearest_corner(const Facet& facet, vec3 v) const {
         vec3 far;
         for (int k = 0; k < 3; ++k) far[k] = glm::distance(v, body_.positions[facet.nodes[k]]);
@@ -71,21 +71,22 @@ class Hanger {
         return far.y <= far.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
     }
 
-    // A place on a facet and how far up along the interpolated normal there; and how far the vertex is aside
-    // of that line.
+    // A foot point: a place on a facet, the height of the vertex along the interpolated normal there, and its
+    // distance from that line.
     struct Foot {
         vec3 weights;
         float height, aside;
     };
-    // Lifts the facet's corners along their normals until the vertex lies in the lifted triangle: there the
-    // weights are those of the foot. How high is the root of a cubic, found by Newton's steps.
+    // Lifts the facet's corners along their normals until the vertex lies in the lifted triangle: its
+    // barycentric weights there are those of the foot point. The height is the root of a cubic, found by
+    // Newton's method.
     Foot foot(const Facet& facet, vec3 v) const {
         dvec3 at[3], up[3];
         for (int k = 0; k < 3; ++k) {
             at[k] = dvec3(body_.positions[facet.nodes[k]]);
             up[k] = dvec3(MappingText::clear_direction(approximate_[facet.nodes[k]]));
         }
-        // The volume that the vertex spans with the triangle lifted by t, and how it grows with t.
+        // The volume of the tetrahedron of the vertex and the triangle lifted by t, and its derivative by t.
         const dvec3 ab = at[1] - at[0], ac = at[2] - at[0], ab_up = up[1] - up[0], ac_up = up[2] - up[0];
         auto volume = [&](double t) {
             return glm::dot(glm::cross(ab + t * ab_up, ac + t * ac_up), dvec3(v) - at[0] - t * up[0]);

@@ -10,18 +10,19 @@
 namespace palpate {
 namespace {
 
-// Each face of a cell: where it looks, and its corners in turn, counter-clockwise from outside.
+// Each face of a cell: its direction, and its corners, counter-clockwise from outside.
 constexpr struct {
     ivec3 out;
     int corners[4];
 } faces[6] = {{{-1, 0, 0}, {0, 4, 6, 2}}, {{1, 0, 0}, {1, 3, 7, 5}},  {{0, -1, 0}, {0, 1, 5, 4}},
               {{0, 1, 0}, {2, 6, 7, 3}},  {{0, 0, -1}, {0, 2, 3, 1}}, {{0, 0, 1}, {4, 5, 7, 6}}};
 
-// Where they look when the grid's axes lie along these edges.
+// Their normals if the grid's axes lie along these edges.
 std::array<vec3, 6> normals_of_faces(const dmat3& edges) {
     const dmat3 cofactors(glm::cross(edges[1], edges[2]), glm::cross(edges[2], edges[0]),
                           glm::cross(edges[0], edges[1]));
-    const double side = glm::determinant(edges) < 0 ? -1 : 1;  // a mirror image's cofactors point inwards
+    const double side = glm::determinant(edges) < 0 ? -1 : 1;  // the cofactors of a mirrored grid point
+                                                               // inwards
     std::array<vec3, 6> normals;
     for (std::size_t f = 0; f < 6; ++f) {
         const dvec3 out = side * (cofactors * dvec3(faces[f].out));

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-// By the boxes around both, and then by the triangle's own ball, which may take in a few too many.
+// A conservative test: by bounding boxes, and then by the bounding sphere of the triangle.
 bool comes_near(const Touchable& surface, uvec3 t, vec3 centre, float radius) {
     const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
     const vec3 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
@@ -26,12 +26,12 @@ bool comes_near(const Touchable& surface, uvec3 t, vec3 centre, float radius) {
 void check(const Touchable& surface) {
     const std::size_t count = surface.positions.size();
     if (!surface.velocities.empty() && surface.velocities.size() != count)
-        throw Error("another number of velocities than of vertices", "a surface to touch",
+        throw Error("a number of velocities that differs from that of the vertices", "a surface to touch",
                     "give one for each, or none");
     for (uvec3 t : surface.triangles)
         if (t.x >= count || t.y >= count || t.z >= count)
-            throw Error("a triangle of vertices that are not there", "a surface to touch",
-                        "give it its own positions");
+            throw Error("a triangle that refers to missing vertices", "a surface to touch",
+                        "use indices of its own positions");
 }
 
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -89,7 +89,8 @@ std::optional<Patch::Face> Patch::find(int surface, int triangle, double time) c
 Patch::Face Patch::face_at(Index face, double time) const {
     const From& from = from_[face];
     const double age = age_at(time);
-    const bool guesses = time - time_ <= longest_guess;  // after that it stands still
+    const bool guesses = time - time_ <= longest_guess;  // whether it is extrapolated; after that it stands
+                                                         // still
     Face found{{}, {}, from.surface, from.triangle, from.is_sheet};
     for (int k = 0; k < 3; ++k) {
         const unsigned corner = mesh_->triangles[face][k];

@@ -12,20 +12,20 @@
 
 namespace palpate {
 
-/// A surface that a hand may meet, as it is at one moment.
+/// A surface that a hand can touch, as it is at one moment.
 struct Touchable {
     std::span<const vec3> positions;        // m
     std::span<const uvec3> triangles;       // counter-clockwise as seen from outside
-    std::span<const vec3> velocities = {};  // m/s, one a vertex; none: it stands still
-    bool is_sheet = false;                  // it stops a hand on both sides; else only one that is outside
+    std::span<const vec3> velocities = {};  // m/s, one for each vertex; empty: it stands still
+    bool is_sheet = false;                  // it stops a hand from both sides; otherwise only from outside
 };
 
-/// What a hand may touch around a place: the triangles there, where they are at a time and how they move on.
-/// Asking it allocates nothing, so that a haptic loop may.
+/// The triangles near a place that a hand can touch, with their motion, in a bounding volume hierarchy: the
+/// broad phase of contact. Queries allocate nothing, so a haptic loop may make them.
 class Patch {
  public:
     struct Face {
-        std::array<dvec3, 3> corners;     // m, at the time asked for
+        std::array<dvec3, 3> corners;     // m, at the time of the query
         std::array<dvec3, 3> velocities;  // m/s
         int surface;                      // the number of its Touchable
         int triangle;                     // and which of its triangles it is
@@ -34,38 +34,39 @@ class Patch {
 
     Patch() = default;  // nothing to touch, anywhere
 
-    /// All triangles of the surfaces that come within `radius` of `centre`. It is true at `time` (s, on the
-    /// clock of the loop that asks it); after that each vertex goes on at its velocity, but for no longer
-    /// than `longest_guess`. Throws Error if a surface names vertices that it does not have.
+    /// All triangles of the surfaces that come within `radius` of `centre`. It holds at `time` (s, on the
+    /// haptic loop's clock). After that, positions are extrapolated with each vertex's velocity, for
+    /// `longest_guess` at most. Throws Error if a triangle refers to missing vertices.
     explicit Patch(std::span<const Touchable> surfaces, vec3 centre = vec3(0),
                    float radius = std::numeric_limits<float>::infinity(), double time = 0);
 
-    static constexpr double longest_guess = 0.05;  // s: three frames. Then whoever moves it must be stuck
+    static constexpr double longest_guess = 0.05;  // s: three frames. After that the simulation must have
+                                                   // stalled
 
-    /// Beyond this ball nothing is known.
+    /// The ball outside of which nothing is known.
     dvec3 centre() const { return centre_; }
     double radius() const { return radius_; }
 
-    /// No vertex goes faster than that, m/s; velocities beyond `fastest_guess` are brought down to it, as
-    /// what goes so fast has blown up.
+    /// A bound on the speed of all vertices, m/s; velocities beyond `fastest_guess` are reduced to it, since
+    /// only a diverging simulation is so fast.
     double fastest() const { return double(fastest_); }
     static constexpr float fastest_guess = 3;
 
-    /// How many Touchables it was made of.
+    /// The number of Touchables.
     std::size_t surfaces() const { return surfaces_; }
 
     std::size_t size() const { return from_.size(); }
 
-    /// One of a surface's triangles at a time, if it is in the patch.
+    /// A triangle of a surface at a time, if it is in the patch.
     std::optional<Face> find(int surface, int triangle, double time) const;
 
-    /// Calls act(Face) for every triangle that comes within `reach` of a point at a time, and for some that
-    /// do not quite.
+    /// Broad phase: calls act(Face) for every triangle that comes within `reach` of a point at a time, and
+    /// for some that are slightly farther away.
     template <class Act>
     void for_each_near(dvec3 point, double reach, double time, const Act& act) const {
         const double age = age_at(time);
         const float far = float(reach + double(fastest_) * age) + 1e-6f +
-                          3e-7f * float(glm::length(point));  // and the rounding of the point to floats
+                          3e-7f * float(glm::length(point));  // for rounding the point to floats
         for_each_within(vec3(point), far * far, [&](Index face) { act(face_at(face, time)); });
     }
 
@@ -81,7 +82,7 @@ class Patch {
     template <class Act>
     void for_each_within(vec3 point, float squared, const Act& act) const {
         if (!tree_) return;
-        std::array<Index, 64> waiting;  // a tree that is halved by its middles is never so deep
+        std::array<Index, 64> waiting;  // a tree that is split at medians is never so deep
         std::size_t count = 0;
         waiting[count++] = 0;
         while (count > 0) {
@@ -104,9 +105,9 @@ class Patch {
     float fastest_ = 0;  // m/s
     std::size_t surfaces_ = 0;
     std::unique_ptr<Mesh> mesh_;
-    std::unique_ptr<Tree> tree_;  // over that
+    std::unique_ptr<Tree> tree_;  // a bounding volume hierarchy over that
     std::vector<vec3> velocities_;
-    std::vector<From> from_;  // of each triangle of the mesh, in rising order
+    std::vector<From> from_;  // of each triangle of the mesh, in increasing order
 };
 
 }  // namespace palpate

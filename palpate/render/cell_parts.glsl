@@ -35,7 +35,7 @@ void include_part(int i, inout Box box) {
 mat3 gradient(int i) {
     vec3 corner[8], at = 0.5 * (low(i) + high(i));
     for (int k = 0; k < 8; ++k) corner[k] = node_position(parts[i].nodes[k]);
-    Followed f = in_cell(corner, at.x, at.y, at.z);
+    MappedVertex f = in_cell(corner, at.x, at.y, at.z);
     return mat3(f.x, f.y, f.z);
 }
 

@@ -7,8 +7,8 @@ layout(location = 6) in ivec3 frames;
 
 layout(std430, binding = 2) readonly buffer FoundFrames { mat4 found[]; };
 
-Followed follow(out vec3 normal) {
-    Followed f = Followed(vec3(0), vec3(0), vec3(0), vec3(0));
+MappedVertex follow(out vec3 normal) {
+    MappedVertex f = MappedVertex(vec3(0), vec3(0), vec3(0), vec3(0));
     for (int k = 0; k < 3; ++k) {
         mat4 frame = found[frames[k]];
         f.position += weights[k] * (frame * vec4(arms[k], 1)).xyz;

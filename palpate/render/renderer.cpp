@@ -416,7 +416,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Surface>& surfaces, const 
         // A dent may turn triangles arbitrarily, but moves them no farther than this.
         if (culls)
             model.culling->find(pass.view, model.closed && !dented, moving[i].nodes.width > 0,
-                                furthest(surfaces[i].dents));
+                                largest_displacement(surfaces[i].dents));
         program.use();
         program.set("centre", vec3(0));
         program.set("size", 1.0f);

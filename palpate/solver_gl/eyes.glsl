@@ -79,7 +79,7 @@ vec3 push_target() { return push_part(0).xyz + pass.time * push_part(1).xyz; }
 float push_stiffness() { return push_part(0).w; }
 vec3 corner(int i) { return texelFetch(corners, i).xyz; }
 
-// As DistanceField::at and uphill.
+// As DistanceField::at and gradient.
 float distance_at(int i, vec3 p) {
     vec4 grid = texelFetch(grids, 2 * i);
     ivec4 dims = floatBitsToInt(texelFetch(grids, 2 * i + 1));

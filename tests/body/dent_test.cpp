@@ -63,9 +63,10 @@ TEST_F(Dents, AreGaussiansThatAddUp) {
                    normal = any_direction();
         const dvec3 there = displaced(dents, place, normal);
         const double deep = glm::dot(dvec3(place) - there, dvec3(normal));
-        EXPECT_LE(std::abs(depth_at(dents, place, normal) - deep), 2e-6 * (furthest(dents) + 1e-3));
+        EXPECT_LE(std::abs(depth_at(dents, place, normal) - deep),
+                  2e-6 * (largest_displacement(dents) + 1e-3));
         EXPECT_LE(glm::distance(dvec3(dented(dents, place, normal)), there), 3e-8);
-        EXPECT_LE(glm::distance(dvec3(place), there), 1.0001 * furthest(dents));
+        EXPECT_LE(glm::distance(dvec3(place), there), 1.0001 * largest_displacement(dents));
     }
 }
 
@@ -196,7 +197,7 @@ TEST_F(Dents, OfNoSaneLengthsAreHarmless) {
             for (const Dent& dent :
                  {Dent{vec3(a, 0, 0), b, 0.01f}, Dent{vec3(0), a, b}, Dent{vec3(0, b, 0), 0.01f, a},
                   Dent{vec3(0), 0.01f, 0.01f, vec3(a, b, 0)}}) {
-                EXPECT_TRUE(std::isfinite(furthest({&dent, 1})));
+                EXPECT_TRUE(std::isfinite(largest_displacement({&dent, 1})));
                 for (vec3 place : {vec3(0), vec3(1e-9f, 0, 0), vec3(0.01f, 0.02f, -0.5f), vec3(1e6f)}) {
                     const vec3 normal = any_direction(), p = dented({&dent, 1}, place, normal),
                                n = dented_normal({&dent, 1}, place, normal);

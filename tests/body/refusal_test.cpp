@@ -131,7 +131,7 @@ TEST(Refusal, OfSurfacesThatAHandCannotTouch) {
     const std::vector<uvec3> wrong = {{0, 1, unsigned(mesh.positions.size())}};
     const Touchable no_speeds{mesh.positions, mesh.triangles, few}, no_vertex{mesh.positions, wrong};
     expect_refused("velocities", [&] { Patch patch({&no_speeds, 1}); });
-    expect_refused("vertices that are not there", [&] { Patch patch({&no_vertex, 1}); });
+    expect_refused("missing vertices", [&] { Patch patch({&no_vertex, 1}); });
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ struct Eyes {
         return each(p, [&](vec3 q) { return vec3(body.fields[i]->at(q), 0, 0); }).x;
     }
     HWY_NOINLINE Pack3 uphill_at(int i, Pack3 p) const {
-        return each(p, [&](vec3 q) { return body.fields[i]->uphill(q); });
+        return each(p, [&](vec3 q) { return body.fields[i]->gradient(q); });
     }
 
  private:

@@ -69,7 +69,7 @@ struct SeeingNode {
     Real push_stiffness() const { return own_push() ? Real(own_push()->stiffness) : Real(0); }
     Real3 corner(int i) const { return Real3(world.corners[std::size_t(i)]); }
     Real distance_at(int i, Real3 p) const { return world.fields[std::size_t(i)]->at(vec3(p)); }
-    Real3 uphill_at(int i, Real3 p) const { return Real3(world.fields[std::size_t(i)]->uphill(vec3(p))); }
+    Real3 uphill_at(int i, Real3 p) const { return Real3(world.fields[std::size_t(i)]->gradient(vec3(p))); }
 
     static Real max(Real a, Real b) { return a > b ? a : b; }
     static Real min(Real a, Real b) { return a < b ? a : b; }
