@@ -7,7 +7,7 @@
 namespace palpate::gl {
 
 Buffer::Buffer(Bytes bytes) : fixed_(true) {
-    // A store of no bytes is an error to GL; an empty mesh is none to us.
+    // OpenGL refuses an empty store, but a mesh may be empty.
     const auto room = static_cast<GLsizeiptr>(std::max<std::size_t>(bytes.size(), 1));
     glNamedBufferStorage(name(), room, bytes.empty() ? nullptr : bytes.data(), 0);
 }

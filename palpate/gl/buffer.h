@@ -18,13 +18,14 @@ struct BufferKind {
 
 using Bytes = std::span<const std::byte>;
 
-/// Memory of the GPU. Move-only; its context must be current whenever it is used, and when it ends.
+/// A buffer in the GPU's memory. Move-only; its context must be current whenever it is used and when it is
+/// destroyed.
 class Buffer {
  public:
-    /// Holds nothing until upload().
+    /// Empty until upload().
     Buffer() = default;
 
-    /// Filled here and never again from the host; shaders may still write to it.
+    /// With immutable storage: filled here and never again by the host, though shaders may write to it.
     template <std::ranges::contiguous_range Values>
     explicit Buffer(const Values& values) : Buffer(Bytes(std::as_bytes(std::span(values)))) {}
     explicit Buffer(Bytes bytes);
@@ -32,8 +33,8 @@ class Buffer {
     /// Room for shaders to write to; zeros at first.
     static Buffer room(std::size_t bytes);
 
-    /// Replaces the contents, of any length. What was drawn from the old ones stays as it was. Not for a
-    /// buffer that was filled when it was made.
+    /// Replaces the contents, of any length. Draw calls already made still use the old ones. Not for a buffer
+    /// that the constructor filled.
     template <std::ranges::contiguous_range Values>
     void upload(const Values& values) {
         upload(Bytes(std::as_bytes(std::span(values))));

@@ -26,7 +26,7 @@ bool can_load(const char* library) {
     return handle != nullptr;
 }
 
-// epoxy ends the program where a library is missing, so look first.
+// epoxy ends the program if a library is missing, so check first.
 void require_libraries() {
     if (!can_load("libEGL.so.1")) throw Error("libEGL.so.1 is missing", where, remedy);
     if (!can_load("libOpenGL.so.0") && !can_load("libGL.so.1"))
@@ -35,7 +35,7 @@ void require_libraries() {
 
 constexpr int oldest = 45;  // direct state access; a card with 4.3's compute shaders has a driver with it
 
-// Of EGL or of another system, in whose libraries one is then.
+// Whether a context is current, of EGL or of another system, whose library is then loaded.
 bool has_current_context() {
     if (eglGetCurrentContext() != EGL_NO_CONTEXT) return true;
     using Current = void* (*)();
@@ -54,8 +54,9 @@ bool is_software(EGLDeviceEXT device) {
            std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos;
 }
 
-// Where a context might be had, the best first. Mesa's surfaceless display does not see other makers' cards,
-// so the cards come before it; a software device comes last, for a Mesa without the surfaceless platform.
+// The displays to try, the best first. Mesa's surfaceless display does not see cards of other vendors'
+// drivers, so the cards come before it; a software device comes last, for a Mesa without the surfaceless
+// platform.
 std::vector<EGLDisplay> displays() {
     std::vector<EGLDisplay> cards, rest;
     if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
@@ -72,7 +73,7 @@ std::vector<EGLDisplay> displays() {
     return cards;
 }
 
-// The newest version of core OpenGL that a display has; 0 if it has none of any use.
+// The newest version of core OpenGL that a display offers; 0 if it has none.
 int newest(EGLDisplay display) {
     eglBindAPI(EGL_OPENGL_API);
     const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2, EGL_NONE};
@@ -85,8 +86,8 @@ int newest(EGLDisplay display) {
     return version;
 }
 
-// A debug context, because only that is sure to report errors; we make few calls, so it costs nothing to
-// speak of. A robust one says when a card has dropped it; not every driver has that.
+// A debug context, because only that is guaranteed to report errors; we make few calls, so it costs little. A
+// robust context reports when the card has lost it; not every driver offers that.
 EGLContext create(EGLDisplay display, bool robust) {
     eglBindAPI(EGL_OPENGL_API);
     const EGLint attributes[][2] = {
@@ -96,11 +97,11 @@ EGLContext create(EGLDisplay display, bool robust) {
         {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE},
         {robust ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE, EGL_LOSE_CONTEXT_ON_RESET},
         {EGL_NONE, EGL_NONE}};
-    // No config, because it would describe a surface and there is none.
+    // No config, because there is no surface that it could describe.
     return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes[0]);
 }
 
-// The context keeps both objects, and takes them with it when it ends.
+// The context owns both objects, which are deleted with it.
 void bind_one_pixel() {
     GLuint pixel = 0, framebuffer = 0;
     glCreateRenderbuffers(1, &pixel);
@@ -122,7 +123,7 @@ Number number(GLenum what) {
     return static_cast<Number>(value);
 }
 
-// How many textures of floats can be drawn into at once.
+// How many float textures can be attached and drawn into at once.
 int float_targets() {
     GLint can = GL_FALSE;
     glGetInternalformativ(GL_TEXTURE_2D, GL_RGBA32F, GL_FRAMEBUFFER_RENDERABLE, 1, &can);
@@ -132,7 +133,7 @@ int float_targets() {
 
 }  // namespace
 
-// On the heap, so that the driver knows where to report errors, wherever the Context moves.
+// On the heap, at a fixed address for the driver's debug callback, wherever the Context moves.
 struct Context::Parts {
     bool adopted = false;
     // Never terminated: all contexts of the process share a display, and eglTerminate would end them all.
@@ -158,12 +159,12 @@ struct Context::Parts {
 std::unique_ptr<Context::Parts> Context::Parts::adopt() {
     auto parts = std::make_unique<Parts>();
     parts->adopted = true;
-    // epoxy ends the program where it is asked without a context.
+    // epoxy ends the program if it is called without a context.
     if (!can_load("libEGL.so.1") || !has_current_context())
         throw Error("no context is current on this thread", where, "make the window's context current first");
     parts->name();
     if (const int version = epoxy_gl_version(); version < oldest)
-        throw Error(fmt::format("this context is of version {}, and {} core is needed", in_words(version),
+        throw Error(fmt::format("this context has version {}, but {} core is needed", in_words(version),
                                 in_words(oldest)),
                     where, "ask the window for a newer one, or update the graphics card's driver");
     return parts;
@@ -199,7 +200,7 @@ void Context::Parts::find() {
     if (found == 0)
         throw Error(fmt::format("no driver has version {} core", in_words(oldest)), where, remedy);
     throw Error(
-        fmt::format("the driver has version {}, and {} core is needed", in_words(found), in_words(oldest)),
+        fmt::format("the driver has version {}, but {} core is needed", in_words(found), in_words(oldest)),
         where, "update the graphics card's driver, or install libgl1-mesa-dri of 2020 or later");
 }
 
@@ -227,7 +228,7 @@ void Context::Parts::listen() {
     glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
     glDebugMessageControl(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_ERROR, GL_DONT_CARE, 0, nullptr, GL_TRUE);
     glEnable(GL_DEBUG_OUTPUT);
-    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // an error is counted before its call returns
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // so an error is counted before its call returns
     auto count = [](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar* message, const void* to) {
         auto& parts = *static_cast<Parts*>(const_cast<void*>(to));
         if (parts.errors++ == 0) parts.first_error = message;
@@ -247,10 +248,10 @@ void Context::make_current() const {
         eglBindAPI(EGL_OPENGL_API);
         if (!eglMakeCurrent(parts_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, parts_->context))
             throw Error("the context cannot be used from this thread", where,
-                        "let the thread that used it before end, or draw there");
+                        "end the thread that used it before, or draw on that thread");
     }
     if (glGetGraphicsResetStatus() != GL_NO_ERROR)
-        throw Error("the graphics card has dropped the context, and all that it held is lost", where,
+        throw Error("the graphics card has lost the context and everything in it", where,
                     "start again; if it happens again, use smaller bodies or pictures, or update the driver");
 }
 

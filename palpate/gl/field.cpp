@@ -11,7 +11,7 @@
 namespace palpate::gl {
 namespace {
 
-// How the values of a format lie in the host's memory.
+// The layout of a format in the host's memory.
 struct Layout {
     GLenum format, type;
 };
@@ -25,8 +25,7 @@ Layout layout(GLenum format) {
             return {GL_RED, GL_FLOAT};
         default:
             if (format == GL_RGBA32F) return {GL_RGBA, GL_FLOAT};
-            throw Error("a format that no shader here reads", "a field",
-                        "use RGBA32F, R32F, RGBA32UI or R32I");
+            throw Error("an unsupported format", "a field", "use RGBA32F, R32F, RGBA32UI or R32I");
     }
 }
 
@@ -38,7 +37,7 @@ std::size_t most(GLenum what) {
 
 void require_room(std::size_t slots, std::size_t room) {
     if (slots > room)
-        throw Error(fmt::format("{} values in one field, of which the driver has {} at most", slots, room),
+        throw Error(fmt::format("{} values in one field, but the driver allows {} at most", slots, room),
                     "OpenGL", "use fewer nodes, or the backend cpu");
 }
 
@@ -64,7 +63,7 @@ Field::Field(GLenum format, std::size_t bytes, std::size_t slots, int width, Byt
 
 void Field::check_fits(std::size_t bytes_at_hand) const {
     if (bytes_at_hand > bytes())
-        throw Error(fmt::format("{} bytes where there is room for {}", bytes_at_hand, bytes()), "a field",
+        throw Error(fmt::format("{} bytes, but there is room for only {}", bytes_at_hand, bytes()), "a field",
                     "put in no more values than it has slots");
 }
 
@@ -83,7 +82,7 @@ void Field::put(Bytes values) {
 
 void Field::copy(const Field& from) {
     if (from.slots_ != slots_ || from.width() != width() || from.format_ != format_)
-        throw Error("a copy of a field of another kind or size", "a field", "make both alike");
+        throw Error("a copy of a field of another format or size", "a field", "make both alike");
     if (buffer_) return glCopyNamedBufferSubData(from.buffer(), buffer(), 0, 0, GLsizeiptr(bytes()));
     glCopyImageSubData(from.texture(), GL_TEXTURE_2D, 0, 0, 0, 0, texture(), GL_TEXTURE_2D, 0, 0, 0, 0,
                        flat_->width(), flat_->height(), 1);

@@ -10,19 +10,19 @@ namespace palpate::gl {
 
 class Context;
 
-/// Values for many slots that shaders look up by number: a buffer, seen through a buffer texture, or laid
-/// flat in a texture of rows of `width`. Move-only.
+/// An array that shaders read by index: a buffer with a buffer texture, or a 2D texture with rows of `width`
+/// texels. Move-only.
 class Field {
  public:
-    /// `format` is a sized one whose values take `bytes` each. `width`: a power of two, or 0 for a buffer.
-    /// Filled from `values`, the rest with zeros. Throws Error if the driver has no room for so many.
+    /// `format`: a sized internal format, of `bytes` per value. `width`: a power of two, or 0 for a buffer.
+    /// Filled from `values`, the rest with zeros. Throws Error if the driver's limits are too small.
     Field(GLenum format, std::size_t bytes, std::size_t slots, int width, Bytes values = {});
 
-    /// Replaces the first values. Throws Error if there are more than slots; so do the next two.
+    /// Replaces the first values. Throws Error if there are more values than slots; so do the next two.
     void put(Bytes values);
-    /// Takes what another field of the same kind and size holds; nothing goes through the host.
+    /// Copies another field of the same format and size, on the GPU.
     void copy(const Field& from);
-    /// The first values, read back.
+    /// Reads back the first values.
     void get(const Context& context, std::span<std::byte> to) const;
 
     void bind(GLuint unit) const { glBindTextureUnit(unit, texture()); }

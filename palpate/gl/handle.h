@@ -5,8 +5,8 @@
 
 namespace palpate::gl {
 
-/// The name of one GL object, deleted at the end. Move-only; 0 after a move. The context that made the object
-/// must be current when the handle ends.
+/// Owns an OpenGL object by its name. Move-only; 0 after a move. The context that made the object must be
+/// current when the handle is destroyed.
 template <class Kind>
 class Handle {
  public:

@@ -15,10 +15,10 @@ struct ShaderKind {
 };
 using ShaderHandle = Handle<ShaderKind>;
 
-// Drivers end their logs with empty lines and repeat themselves; the first line says it.
+// The first line of a driver's log, which says what is wrong.
 std::string first_line(const std::string& log) {
     std::size_t from = log.find_first_not_of(" \t\r\n");
-    if (from == std::string::npos) return "the driver does not say why";
+    if (from == std::string::npos) return "the driver gives no reason";
     return log.substr(from, log.find_first_of("\r\n", from) - from);
 }
 

@@ -8,7 +8,7 @@
 
 namespace palpate::gl {
 
-/// The text of one shader file.
+/// The source of one shader.
 struct Shader {
     GLenum stage;           // GL_VERTEX_SHADER, ...
     std::string_view file;  // its name, for errors
@@ -20,19 +20,19 @@ struct ProgramKind {
     static void remove(GLuint name) { glDeleteProgram(name); }
 };
 
-/// Shaders that run together. Move-only; its context must be current whenever it is used, and when it ends.
+/// A linked shader program. Move-only; its context must be current whenever it is used and when it is
+/// destroyed.
 class Program {
  public:
-    /// Several shaders of one stage are linked into one, as C links several files: functions that one
-    /// declares, another defines. Throws Error with the file's name and the driver's first complaint.
-    /// `captured`: outputs of the vertex shader that transform feedback writes, each into a buffer of its
-    /// own.
+    /// Several shaders of one stage may be linked together: functions that one declares, another defines.
+    /// Throws Error with the file's name and the first line of the driver's log. `captured`: outputs of the
+    /// vertex shader that transform feedback writes, each into a buffer of its own.
     explicit Program(std::initializer_list<Shader> shaders, std::span<const char* const> captured = {});
 
     void use() const { glUseProgram(handle_.name()); }
 
-    /// Sets a uniform, in use or not. A name that the shaders do not use is ignored, so that several programs
-    /// can be told the same things.
+    /// Sets a uniform; the program need not be in use. A name that the shaders do not use is ignored, so
+    /// several programs can be given the same uniforms.
     void set(const char* name, int value) const;
     void set(const char* name, float value) const;
     void set(const char* name, vec2 value) const;

@@ -9,16 +9,14 @@ struct TextureKind {
     static void remove(GLuint name) { glDeleteTextures(1, &name); }
 };
 
-/// A flat picture in the GPU's memory, for shaders to read and framebuffers to write. Move-only; its context
-/// must be current whenever it is used, and when it ends.
+/// A 2D texture. Move-only; its context must be current whenever it is used and when it is destroyed.
 class Texture {
  public:
-    /// `format` is a sized one, such as GL_RGBA8. With more than one sample a pixel, shaders cannot filter
-    /// it.
+    /// `format`: a sized internal format, such as GL_RGBA8. With more than one sample a pixel, shaders cannot
+    /// filter it.
     Texture(GLenum format, int width, int height, int samples = 1);
 
-    /// Filled, with smaller versions for when it is seen from afar. `pixels`: width × height times four
-    /// bytes, the lowest row first.
+    /// Filled, with mipmaps. `pixels`: width × height times four bytes, the lowest row first.
     static Texture with_mipmaps(GLenum format, int width, int height, const std::uint8_t* pixels);
 
     GLuint name() const { return handle_.name(); }

@@ -8,7 +8,7 @@
 namespace palpate::gl {
 namespace {
 
-// What is off for us, one switch each, and what besides is on.
+// The switches (glEnable) that are off during a visit, and those that are on.
 constexpr GLenum switched_off[] = {GL_CULL_FACE,           GL_DEPTH_TEST,
                                    GL_STENCIL_TEST,        GL_FRAMEBUFFER_SRGB,
                                    GL_RASTERIZER_DISCARD,  GL_POLYGON_OFFSET_FILL,
@@ -23,7 +23,7 @@ constexpr GLenum switched_off[] = {GL_CULL_FACE,           GL_DEPTH_TEST,
                                    GL_CLIP_DISTANCE6,      GL_CLIP_DISTANCE7};
 constexpr GLenum switched_on[] = {GL_MULTISAMPLE, GL_DITHER};
 
-// How rows of pixels lie in the host's memory, given and taken, and what that is from the start.
+// The parameters of pixel storage (glPixelStore), with their defaults.
 constexpr struct {
     GLenum name;
     GLint usual;
@@ -34,15 +34,15 @@ constexpr struct {
                   {GL_PACK_SKIP_PIXELS, 0},   {GL_PACK_ALIGNMENT, 4},      {GL_PACK_SKIP_IMAGES, 0},
                   {GL_PACK_IMAGE_HEIGHT, 0}};
 
-// The kinds of texture that are read here, each with what asks for the one that is bound.
+// The texture targets that are used here, each with the query for its binding.
 constexpr struct {
     GLenum target, binding;
 } texture_kinds[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
                      {GL_TEXTURE_BUFFER, GL_TEXTURE_BINDING_BUFFER},
                      {GL_TEXTURE_2D_MULTISAMPLE, GL_TEXTURE_BINDING_2D_MULTISAMPLE}};
 
-constexpr GLuint most_targets = 8;     // colours that a fragment shader writes at once
-constexpr GLuint most_viewports = 16;  // as many as a driver must have
+constexpr GLuint most_targets = 8;     // colour attachments that a fragment shader writes
+constexpr GLuint most_viewports = 16;  // the minimum that a driver must offer
 
 GLint integer(GLenum name) {
     GLint value = 0;
@@ -59,7 +59,7 @@ GLint integer(GLenum name, GLuint index) {
 void turn(GLenum name, bool on) { (on ? glEnable : glDisable)(name); }
 void turn(GLenum name, GLuint index, bool on) { (on ? glEnablei : glDisablei)(name, index); }
 
-// The blending of one colour that a fragment shader writes, and whether it is written at all.
+// The blending and the write mask of one colour attachment.
 struct Colour {
     bool blends = false;
     GLint from_rgb = 0, to_rgb = 0, from_alpha = 0, to_alpha = 0, rgb = 0, alpha = 0;
@@ -84,7 +84,7 @@ struct Colour {
     }
 };
 
-// Where in a framebuffer something is drawn, and what of that is cut off.
+// A viewport, with its depth range and scissor box.
 struct Window {
     GLfloat viewport[4] = {};
     GLdouble depth[2] = {};
@@ -107,7 +107,7 @@ struct TextureUnit {
     GLuint sampler = 0;
 };
 
-// A part of a buffer that shaders see, or all of it.
+// A binding of a buffer or of a range of it.
 struct Range {
     GLuint buffer = 0;
     GLint64 start = 0, size = 0;
@@ -159,7 +159,7 @@ struct Visit::Kept {
            storage_buffer = bound(GL_SHADER_STORAGE_BUFFER_BINDING),
            uniform_buffer = bound(GL_UNIFORM_BUFFER_BINDING);
 
-    GLint polygons[2] = {};  // of fronts and backs, which core OpenGL does not tell apart
+    GLint polygons[2] = {};  // of front and back faces, which core OpenGL does not distinguish
 
     Kept();
     void set_defaults() const;
@@ -188,7 +188,7 @@ Visit::Kept::Kept() {
 void Visit::Kept::set_defaults() const {
     for (GLenum name : switched_off) glDisable(name);
     for (GLenum name : switched_on) glEnable(name);
-    for (GLenum name : {GL_BLEND, GL_SCISSOR_TEST}) glDisable(name);  // of every index
+    for (GLenum name : {GL_BLEND, GL_SCISSOR_TEST}) glDisable(name);  // at every index
     for (const auto& [name, usual] : pixel_rows) glPixelStorei(name, usual);
     glBlendFunc(GL_ONE, GL_ZERO);
     glBlendEquation(GL_FUNC_ADD);

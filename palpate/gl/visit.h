@@ -3,16 +3,14 @@
 
 namespace palpate::gl {
 
-/// A visit in a context in which others draw too: an application, or a window's controls. It begins with
-/// OpenGL's own defaults for all that decides how triangles become pixels and how pixels are copied, whatever
-/// the others have set; at its end they find everything as they left it. Everything here that draws, computes
-/// or uploads does so during one.
+/// Saves the OpenGL state of a context in which others draw too (an application, or a window's controls),
+/// sets OpenGL's defaults for everything that affects rasterisation and pixel transfer, and restores the
+/// saved state at its end. All code here that draws, computes or uploads does so during a visit.
 ///
-/// Two things no visit can put aside: it must not begin between glBeginTransformFeedback and its end, nor
-/// during conditional rendering.
+/// A visit must not begin during transform feedback or conditional rendering, which it cannot suspend.
 class Visit {
  public:
-    /// How many texture units and bindings of storage buffers are kept, from 0 on: as many as are used here.
+    /// How many texture units and storage buffer bindings are saved, from 0 on: as many as are used here.
     static constexpr unsigned units = 18, buffers = 8;
 
     Visit();

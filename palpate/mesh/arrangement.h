@@ -6,12 +6,12 @@
 
 namespace palpate {
 
-/// What several questions in turn need to know of how a mesh's parts lie: made when it is first asked for,
-/// and kept. Faces may be turned over and vertices numbered anew in between; whoever drops faces calls
-/// forget().
+/// A cache of what several steps need to know about how a mesh's parts lie: its tree and winding numbers,
+/// computed on first use. Faces may be flipped and vertices renumbered in between; call forget() after
+/// dropping faces.
 class Arrangement {
  public:
-    /// How many times others wind around each part; nothing where its faces do not agree.
+    /// The winding number of the other parts around each part; empty where its faces disagree.
     using Around = std::vector<std::optional<int>>;
 
     explicit Arrangement(const Mesh& mesh) : mesh_(mesh) {}
@@ -22,7 +22,7 @@ class Arrangement {
         around_outward.reset();
     }
 
-    std::optional<Around> around_outward;  // if all parts were turned outward
+    std::optional<Around> around_outward;  // with all parts turned outward
 
  private:
     const Mesh& mesh_;

@@ -11,8 +11,7 @@ namespace palpate {
 using Index = std::uint32_t;
 constexpr Index none = ~Index(0);
 
-/// Which faces meet at each vertex; what every question about neighbours starts from. Corner 3f + k is corner
-/// k of face f.
+/// A corner table (half-edges): the faces that meet at each vertex. Corner 3f + k is corner k of face f.
 class Corners {
  public:
     explicit Corners(const Mesh& mesh) : triangles_(mesh.triangles), first_(mesh.positions.size() + 1) {
@@ -30,7 +29,7 @@ class Corners {
     std::size_t vertices() const { return first_.size() - 1; }
     Index vertex(Index corner) const { return triangles_[corner / 3][corner % 3]; }
 
-    /// The corners that follow and precede within the same face.
+    /// The next and the previous corner of the same face.
     static Index next(Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
     static Index previous(Index corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
 
@@ -40,18 +39,18 @@ class Corners {
     std::vector<Index> corners_;  // by vertex
 };
 
-/// A face's side along an edge, as seen from the edge's lower vertex.
+/// A half-edge: the side of a face along an edge. An edge is stored at its vertex of lower number.
 struct Side {
-    Index other;   // the edge's higher vertex
-    Index corner;  // where the side begins, in its face
-    bool up;       // whether it runs from the lower vertex to the higher
+    Index other;   // the edge's vertex of higher number
+    Index corner;  // the corner of its face where the side begins
+    bool up;       // whether it runs from the lower vertex number to the higher
 
     /// The face's corners at the edge's two ends.
     Index low() const { return up ? corner : Corners::next(corner); }
     Index high() const { return up ? Corners::next(corner) : corner; }
 };
 
-/// Calls f(lower vertex, sides) once for each edge, with all the faces' sides along it. The two sides of a
+/// Calls f(lower vertex, sides) once for each edge, with the sides of all faces along it. The two sides of a
 /// collapsed face, from a vertex to itself, count as an edge of their own.
 template <class F>
 void for_each_edge(const Corners& corners, F f) {
@@ -73,14 +72,14 @@ void for_each_edge(const Corners& corners, F f) {
     }
 }
 
-/// Sets that grow together; of each, one member stands for all.
+/// Disjoint sets (union-find); each set is known by one of its members.
 class Groups {
  public:
     explicit Groups(std::size_t members) : parent_(members) {
         for (Index i = 0; i < members; ++i) parent_[i] = i;
     }
     Index of(Index i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];  // halves the way for those behind
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];  // path halving
         return i;
     }
     void unite(Index i, Index j) { parent_[of(j)] = of(i); }
@@ -89,11 +88,13 @@ class Groups {
     std::vector<Index> parent_;
 };
 
-/// For each corner, the corner from which the face beyond begins the same edge, running the other way; none
-/// at a border. Where an edge has many faces, those are twins between which lies matter and no other face.
+/// For each corner, its half-edge's twin: the corner from which the neighbouring face runs along the same
+/// edge in the opposite direction; none at a border. On a non-manifold edge, twins are faces with matter and
+/// no other face between them.
 std::vector<Index> twins(const Mesh& mesh);
 
-/// Three corners in a line, or so nearly that rounding decides on which side of it the third lies.
+/// Whether a face is degenerate: its corners are collinear, or so nearly that rounding decides on which side
+/// of a line the third lies.
 inline bool is_flat(const Mesh& mesh, uvec3 t) {
     const dvec3 a(mesh.positions[t.x]), ab = dvec3(mesh.positions[t.y]) - a,
                                         ac = dvec3(mesh.positions[t.z]) - a, bc = ac - ab;
@@ -107,15 +108,15 @@ inline double face_area(const Mesh& mesh, uvec3 t) {
     return 0.5 * glm::length(glm::cross(dvec3(mesh.positions[t.y]) - a, dvec3(mesh.positions[t.z]) - a));
 }
 
-/// Drops what no longer fits when vertices or positions change.
+/// Drops the attributes that become invalid when vertices or positions change.
 inline void drop_attributes(Mesh& mesh) {
     mesh.normals.clear();
     mesh.uvs.clear();
     mesh.tangents.clear();
 }
 
-/// Leaves the first `count` vertices, whose positions already stand there, and turns the faces' to `place`,
-/// the new number of each vertex of old. Returns how many vertices went.
+/// Keeps the first `count` positions, and renumbers the faces' vertices by `place`, the new number of each
+/// old vertex. Returns how many vertices were removed.
 inline std::size_t renumber(Mesh& mesh, const std::vector<Index>& place, Index count) {
     const std::size_t went = mesh.positions.size() - count;
     if (went == 0) return 0;

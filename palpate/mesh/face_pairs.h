@@ -5,10 +5,10 @@
 
 namespace palpate {
 
-/// Goes through the pairs of leaves of a tree whose boxes are no farther apart than `reach` (m), each pair
-/// once and each leaf with itself. Those below two nodes for which skip(node, node) is true are left out.
-/// Ends early where visit(leaf, leaf) returns false. `waiting`: the pairs of nodes below which it looks, a
-/// node with itself meaning all within it; afterwards what is left of them.
+/// Broad phase: visits the pairs of leaves of a tree whose bounding boxes are no farther apart than `reach`
+/// (m), each pair once, and each leaf with itself. It skips what is below two nodes for which skip(node,
+/// node) is true. Ends early if visit(leaf, leaf) returns false. `waiting`: a stack of the pairs of nodes to
+/// search, where a node with itself means all pairs within it; afterwards what remains of them.
 template <class Skip, class Visit>
 void for_each_pair_of_leaves(const Tree& tree, std::vector<uvec2>& waiting, float reach, Skip skip,
                              Visit visit) {
@@ -34,7 +34,7 @@ void for_each_pair_of_leaves(const Tree& tree, std::vector<uvec2>& waiting, floa
     }
 }
 
-/// The same below the whole tree; returns whether it came to the end.
+/// The same for the whole tree; returns whether it was completed.
 template <class Skip, class Visit>
 bool for_each_pair_of_leaves(const Tree& tree, float reach, Skip skip, Visit visit) {
     std::vector<uvec2> waiting;
@@ -45,7 +45,7 @@ bool for_each_pair_of_leaves(const Tree& tree, float reach, Skip skip, Visit vis
     return ended;
 }
 
-/// Calls look(i, j) for the faces of a pair of leaves, by their places in `tree.faces`, each pair once.
+/// Calls look(i, j) for each pair of faces of two leaves, by their indices in `tree.faces`.
 template <class Look>
 void for_each_pair_of_faces(const Tree& tree, Index leaf, Index other, Look look) {
     const Tree::Node &a = tree.nodes[leaf], &b = tree.nodes[other];

@@ -10,7 +10,7 @@ namespace {
 
 bool is_collapsed(uvec3 t) { return t.x == t.y || t.y == t.z || t.z == t.x; }
 
-// The same face begun at its lowest corner.
+// The same face, rotated to begin at its lowest vertex.
 uvec3 lowest_first(uvec3 t) {
     while (t.x > t.y || t.x > t.z) t = {t.y, t.z, t.x};
     return t;
@@ -21,7 +21,7 @@ uvec3 ascending(uvec3 t) {
     return t.y < t.z ? t : uvec3(t.x, t.z, t.y);
 }
 
-// Calls f(faces) for all faces of the same key, in rising order: key by key. A key's first vertex is its
+// Calls f(faces) for each group of faces with the same key, in increasing order. A key's first vertex is its
 // lowest.
 template <class F>
 void for_each_alike(const Mesh& mesh, uvec3 (*key)(uvec3), F f) {
@@ -60,8 +60,8 @@ std::size_t count(const std::vector<char>& drop) {
     return std::size_t(std::count(drop.begin(), drop.end(), true));
 }
 
-// Mends flat faces, each of them with only its neighbours, so that within a pass none that has changed is
-// looked at again.
+// Mends degenerate faces. Each change concerns only a face and its neighbours, which are then left alone
+// until the next pass.
 class FlatFaces {
  public:
     explicit FlatFaces(Mesh& mesh) : mesh_(mesh), twins_(twins(mesh)), corners_(mesh) {}
@@ -83,7 +83,7 @@ class FlatFaces {
                              dvec3(mesh_.positions[vertex(Corners::next(corner))]));
     }
 
-    // A needle has two long sides, a cap one that is as long as both others.
+    // A needle has two long sides; the long side of a cap is as long as the two others together.
     bool mend(Index face) {
         std::array<Index, 3> side = {3 * face, 3 * face + 1, 3 * face + 2};
         std::sort(side.begin(), side.end(), [&](Index a, Index b) { return length(a) < length(b); });
@@ -93,11 +93,12 @@ class FlatFaces {
 
     bool unchanged(Index v) const { return !changed_[v]; }
 
-    // So that a vertex of very many faces does not cost their square.
+    // Avoids quadratic time at a vertex of very many faces.
     bool may_change(Index v) const { return unchanged(v) && corners_.at(v).size() <= 500; }
 
-    // Puts the far end of the side that begins at `corner` to its near end. Two faces collapse with it. Only
-    // where the two ends have no common neighbours but those of these faces does nothing else get folded.
+    // Edge collapse: moves the far end of the side that begins at `corner` to its near end, which removes two
+    // faces. It is safe only if the ends share no neighbours but the tips of these faces (the link
+    // condition).
     bool collapse(Index corner) {
         const Index to = vertex(corner), from = vertex(Corners::next(corner));
         if (twins_[corner] == none || !may_change(to) || !may_change(from)) return false;
@@ -116,7 +117,7 @@ class FlatFaces {
         return true;
     }
 
-    // Joins the corners across the side that begins at `corner`, instead of its ends.
+    // Edge flip: joins the corners across the side that begins at `corner`, instead of its ends.
     bool flip(Index corner) {
         const Index back = twins_[corner];
         if (back == none) return false;
@@ -188,7 +189,7 @@ std::size_t drop_copies(Mesh& mesh) {
 
 std::size_t drop_flaps(Mesh& mesh) {
     std::vector<char> drop(mesh.triangles.size());
-    std::vector<Index> open;  // of the faces with these corners those that have no back yet
+    std::vector<Index> open;  // faces with these corners that have no opposite face yet
     for_each_alike(mesh, ascending, [&](std::span<const Index> same) {
         open.clear();
         for (Index face : same) {
@@ -206,7 +207,7 @@ std::size_t drop_flaps(Mesh& mesh) {
 }
 
 std::size_t drop_flat_faces(Mesh& mesh) {
-    constexpr int most_passes = 8;  // each takes every other one at least of a row of them
+    constexpr int most_passes = 8;  // each mends at least every other one in a row of them
     std::size_t went = 0, flat = count_flat(mesh);
     for (int pass = 0; pass < most_passes && flat > 0; ++pass) {
         Mesh mended{mesh.positions, {}, mesh.triangles};

@@ -11,14 +11,14 @@
 namespace palpate {
 namespace {
 
-constexpr double rare = 1e-4;    // so few values at either end may be outliers,
-constexpr double narrow = 0.25;  // if the others take less than this part of the range
+constexpr double rare = 1e-4;    // this part of the values at either end may be outliers,
+constexpr double narrow = 0.25;  // if the others take up less than this part of the range
 
 struct Range {
     double low, high;
 };
 
-// Which bin counts this value. Without bins of any width, the first.
+// The bin of a value; the first if bins have no width.
 std::size_t bin_of(const Histogram& histogram, double value) {
     const double width = std::max(histogram.width(), std::numeric_limits<double>::min());
     return std::size_t(
@@ -34,7 +34,7 @@ void count(Histogram& histogram, const Volume& volume, Range range, int bins) {
     for (double value : volume.values) ++histogram.counts[bin_of(histogram, value)];
 }
 
-// The range of the values without those in the few rare bins at either end.
+// The range of the values without the outliers at either end.
 Range common(const Histogram& histogram, const Volume& volume) {
     const auto& counts = histogram.counts;
     auto skip_rare = [&](auto bin) {
@@ -89,12 +89,13 @@ std::vector<float> percentiles(std::vector<float>&& values, std::span<const doub
 
 std::optional<float> suggested_iso(const Histogram& histogram) {
     const auto& counts = histogram.counts;
-    double all = 0, sum = 0;  // of values, and of the bins they are in
+    double all = 0, sum = 0;  // of values, and of their bin numbers
     for (std::size_t bin = 0; bin < counts.size(); ++bin) {
         all += double(counts[bin]);
         sum += double(counts[bin]) * double(bin);
     }
-    // Where no value lies between dark and bright, any threshold does as well: the middle one is taken.
+    // If no value lies between dark and bright, all thresholds there are equally good: it takes the middle
+    // one.
     double best = 0, dark = 0, dark_sum = 0;
     std::size_t first = 0, last = 0;
     for (std::size_t bin = 0; bin + 1 < counts.size(); ++bin) {

@@ -9,14 +9,15 @@
 namespace palpate {
 namespace {
 
-// The borders of holes, each as the loop of vertices round which the missing faces would turn. Every vertex
-// is left as often as it is entered; so a walk that takes any way on comes back to where it was, and what it
-// has gone round since is cut off as a loop of its own. So no loop passes through a vertex twice.
+// The boundary loops of holes, in the winding order of the missing faces. A walk along border edges leaves
+// every vertex as often as it enters it, so it always returns to a vertex where it has been; what it has
+// walked since then is cut off as a loop of its own. So no loop passes through a vertex twice.
 std::vector<std::vector<Index>> loops(const Mesh& mesh) {
     const std::vector<Index> twin = twins(mesh);
     auto vertex = [&](Index corner) { return mesh.triangles[corner / 3][corner % 3]; };
-    std::vector<Index> last(mesh.positions.size(), none);  // way on from each vertex: the corner it leads to
-    std::vector<Index> before(twin.size(), none);          // and another from the same vertex
+    std::vector<Index> last(mesh.positions.size(), none);  // the last border edge from each vertex, as a
+                                                           // corner
+    std::vector<Index> before(twin.size(), none);          // the border edge before it from the same vertex
     for (Index corner = 0; corner < twin.size(); ++corner)
         if (twin[corner] == none) before[corner] = std::exchange(last[vertex(Corners::next(corner))], corner);
 
@@ -38,8 +39,8 @@ std::vector<std::vector<Index>> loops(const Mesh& mesh) {
     return found;
 }
 
-// Of all ways to cut a loop into triangles the one of least area, and of those of about the same the one with
-// the shortest sides; in a time that grows as the cube of its length.
+// The triangulation of a loop with the least area and, among those of about the same area, with the shortest
+// edges; by dynamic programming in cubic time.
 class LeastArea {
  public:
     explicit LeastArea(std::span<const vec3> corners)
@@ -78,11 +79,11 @@ class LeastArea {
 
     std::span<const vec3> corners_;
     Index n_;
-    std::vector<double> best_;  // cost of what lies beyond the chord from one corner to a later one
-    std::vector<Index> tip_;    // of the triangle on that chord
+    std::vector<double> best_;  // the cost of the triangles beyond the chord from one corner to a later one
+    std::vector<Index> tip_;    // the tip of the triangle on that chord
 };
 
-constexpr double most_work = 1e9;  // steps towards the least area, about a second or two
+constexpr double most_work = 1e9;  // steps of the dynamic programming, about a second or two
 
 }  // namespace
 

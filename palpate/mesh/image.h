@@ -4,7 +4,7 @@
 
 namespace palpate {
 
-/// A picture: eight bits each of red, green, blue and alpha (sRGB, as shown), rows from the top down.
+/// An image: eight bits each of red, green, blue and alpha (sRGB), rows from the top down.
 struct Image {
     int width = 0;
     int height = 0;

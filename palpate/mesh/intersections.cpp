@@ -13,7 +13,7 @@ namespace {
 
 struct Triangle {
     std::array<dvec3, 3> corners;
-    dvec3 normal;  // of length one; zero if it is flat
+    dvec3 normal;  // unit; zero if the face is degenerate
 };
 
 Triangle triangle(const Mesh& mesh, Index face) {
@@ -26,7 +26,7 @@ Triangle triangle(const Mesh& mesh, Index face) {
     return result;
 }
 
-// On which side of a face's plane each corner of another lies: 1, -1, or 0 where it as good as touches.
+// On which side of a face's plane each corner of another lies: 1, -1, or 0 if it touches within rounding.
 std::array<int, 3> sides_of(const Triangle& plane, const Triangle& other, double touch) {
     std::array<int, 3> side{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -36,14 +36,15 @@ std::array<int, 3> sides_of(const Triangle& plane, const Triangle& other, double
     return side;
 }
 
-// Whether the line from p to q passes through the triangle, clear of its sides.
+// Whether the line from p to q passes through the inside of the triangle.
 bool passes(dvec3 p, dvec3 q, const Triangle& through, double touch) {
     const dvec3 way = q - p;
     bool left = true, right = true;
     for (std::size_t k = 0; k < 3; ++k) {
         const dvec3 from = through.corners[k], to = through.corners[(k + 1) % 3];
         const double turn = glm::dot(way, glm::cross(from - p, to - p));
-        const double least = touch * glm::length(glm::cross(way, to - from));  // the lines that far apart
+        const double least = touch * glm::length(glm::cross(way, to - from));  // for lines that are just that
+                                                                               // far apart
         left &= turn > least;
         right &= turn < -least;
     }
@@ -81,7 +82,7 @@ bool cut(const Triangle& a, const Triangle& b, double touch) {
            (!one_side_only(of_b) && any_side_passes(b, of_b, a, touch));
 }
 
-// The plates of a tree's nodes, and how far a vertex lies off each one's plane at most.
+// The plates of a tree's nodes, and the greatest distance of a vertex from each one's plane.
 class Planes {
  public:
     Planes(const Tree& tree, double touch)
@@ -90,7 +91,7 @@ class Planes {
                      [&](std::size_t i) { thickness_[i] = thickness(tree, tree.nodes[i], plates_[i]); });
     }
 
-    // Whether all faces of two nodes lie in one plane, where none can cut another.
+    // Whether all faces of two nodes are coplanar, so that none can cut another.
     bool in_one_plane(Index node, Index other) const {
         if (!(thickness_[node] + thickness_[other] <= touch_)) return false;
         const Tree::Plate &a = plates_[node], &b = plates_[other];
@@ -99,7 +100,7 @@ class Planes {
     }
 
  private:
-    // Infinite where it is more than counts as one plane, as is seen after a few faces of most.
+    // Infinite if it is more than counts as one plane, which mostly shows after a few faces.
     double thickness(const Tree& tree, const Tree::Node& node, const Tree::Plate& plate) const {
         constexpr double infinite = std::numeric_limits<double>::infinity();
         const double length = glm::length(plate.area);
@@ -120,7 +121,7 @@ class Planes {
     double touch_;
 };
 
-// What one processor looks at before all are asked again.
+// What one thread searches in one round.
 struct Share {
     std::vector<uvec2> waiting{};  // pairs of nodes
     std::vector<uvec2> cuts{};     // pairs of faces
@@ -128,7 +129,7 @@ struct Share {
 };
 constexpr std::size_t shares_at_once = 64, looks_in_a_share = 20'000;
 
-// Where few faces are in the way, these and `rings` of faces around them.
+// These faces and `rings` rings of faces around them.
 void drop_around(Mesh& mesh, const Intersections& found, int rings) {
     std::vector<char> face(mesh.triangles.size()), vertex(mesh.positions.size());
     for (uvec2 pair : found.faces) face[pair.x] = face[pair.y] = true;
@@ -169,7 +170,8 @@ Intersections intersections(const Tree& tree, std::size_t most) {
     const std::size_t most_looks = most_looks_at(mesh);
     std::size_t looks = 0;
     std::vector<uvec2> waiting = {{0, 0}};
-    // All processors look, in rounds, so that it does not depend on their number where a search is given up.
+    // All threads search, in rounds of fixed size, so that the point at which a search gives up does not
+    // depend on their number.
     while (!waiting.empty() && looks <= most_looks && found.faces.size() < most) {
         std::vector<Share> shares(std::min(shares_at_once, waiting.size()));
         for (Share& share : shares) {
@@ -200,7 +202,7 @@ Intersections intersections(const Tree& tree, std::size_t most) {
 }
 
 std::size_t mend_intersections(Mesh& mesh, const Intersections& found) {
-    constexpr double few = 0.05, most_lost = 0.02;  // of the faces; of the volume
+    constexpr double few = 0.05, most_lost = 0.02;  // as parts of the faces, and of the volume
     constexpr int rounds = 4;
     const std::size_t faces = count_faces(found);
     if (faces == 0 || double(faces) > few * double(mesh.triangles.size())) return 0;
@@ -211,7 +213,7 @@ std::size_t mend_intersections(Mesh& mesh, const Intersections& found) {
         drop_around(mended, left, round);
         close_holes(mended);
         drop_flaps(mended);
-        part_sheets(mended);
+        separate_sheets(mended);
         left = intersections(mended);
     }
     if (!left.faces.empty() || !(std::abs(volume(mended) - before) <= most_lost * std::abs(before))) return 0;

@@ -8,13 +8,13 @@
 namespace palpate {
 namespace {
 
-// Of length one; zero if v has no direction.
+// The unit vector along v; zero if v is zero.
 vec3 unit(vec3 v) {
     float length = glm::length(v);
     return length > 0 ? v / length : vec3(0);
 }
 
-// The angle between two unit vectors, by the form that stays exact near 0 and 180 degrees.
+// The angle between two unit vectors, by a formula that is exact near 0 and 180 degrees, too.
 float angle(vec3 a, vec3 b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
 
 }  // namespace
@@ -42,7 +42,7 @@ float metres(Units units) {
 }
 
 double volume(const Mesh& mesh) {
-    // Any point serves as the tip of the tetrahedra; one amid them keeps the terms small.
+    // Any point may be the tip of the tetrahedra; a central one keeps the terms small.
     const dvec3 tip = mesh.positions.empty() ? dvec3(0) : dvec3(bounds(mesh).centre());
     double six_volumes = 0;
     for (uvec3 t : mesh.triangles) {
@@ -60,7 +60,7 @@ void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3
                      std::vector<vec3>& normals) {
     normals.assign(positions.size(), vec3(0));
     for (uvec3 t : triangles) {
-        // Sides of length one first: so no product of small lengths gets lost, however small the face.
+        // Normalised sides first, so that products of small lengths do not underflow.
         const vec3 sides[] = {positions[t.y] - positions[t.x], positions[t.z] - positions[t.y],
                               positions[t.x] - positions[t.z]};
         const vec3 ab = unit(sides[0]), bc = unit(sides[1]), ca = unit(sides[2]);
@@ -68,7 +68,7 @@ void compute_normals(const std::vector<vec3>& positions, const std::vector<uvec3
         const float longest = std::max({lengths[0], lengths[1], lengths[2]});
         if (!(longest > 0)) continue;
         // Twice the area of the face scaled to a longest side of 1: near 0 for a sliver, whose normal is
-        // mostly chance.
+        // unreliable.
         const float roundness =
             (lengths[0] / longest) * (lengths[1] / longest) * glm::length(glm::cross(ab, bc));
         const vec3 face = std::min(4 * roundness, 1.0f) * unit(glm::cross(ab, bc));
@@ -94,14 +94,15 @@ void check(const Mesh& mesh, std::string_view where) {
     const std::size_t count = mesh.positions.size();
     auto fits = [&](const auto& list) { return list.empty() || list.size() == count; };
     if (!fits(mesh.normals) || !fits(mesh.uvs) || !fits(mesh.tangents))
-        throw Error("normals, texture coordinates or tangents of another number of vertices", where,
-                    "give every vertex one, or none at all");
+        throw Error(
+            "a number of normals, texture coordinates or tangents that differs from that of the vertices",
+            where, "give every vertex one, or none at all");
     for (uvec3 t : mesh.triangles)
         if (std::max({t.x, t.y, t.z}) >= count)
-            throw Error("a triangle with a vertex that is not there", where, "count vertices from 0");
+            throw Error("a triangle that refers to a missing vertex", where, "count vertices from 0");
     for (vec3 p : mesh.positions)
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            throw Error("a vertex at a place that is not finite", where, "give places in m");
+            throw Error("a vertex position that is not finite", where, "give positions in m");
 }
 
 void compute_tangents(Mesh& mesh) {
@@ -114,7 +115,8 @@ void compute_tangents(Mesh& mesh) {
         const vec3 ab = mesh.positions[t.y] - mesh.positions[t.x];
         const vec3 ac = mesh.positions[t.z] - mesh.positions[t.x];
         const vec2 uv_ab = mesh.uvs[t.y] - mesh.uvs[t.x], uv_ac = mesh.uvs[t.z] - mesh.uvs[t.x];
-        // The face's gradients of position over u and v; of the area in the texture only the sign counts.
+        // The derivatives of position by u and v in the face (its Jacobian); of the area in the texture only
+        // the sign counts.
         const float area = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
         const float sign = area > 0 ? 1.0f : area < 0 ? -1.0f : 0.0f;
         const vec3 u = sign * unit(ab * uv_ac.y - ac * uv_ab.y), v = sign * unit(ac * uv_ab.x - ab * uv_ac.x);
@@ -140,7 +142,7 @@ void compute_tangents(Mesh& mesh) {
 void rotate(Mesh& mesh, vec3 degrees) {
     const dvec3 angle = glm::radians(dvec3(degrees));
     const dvec3 c = glm::cos(angle), s = glm::sin(angle);
-    // Columns, as glm has them.
+    // Columns, as in glm.
     const dmat3 about_x(1, 0, 0, 0, c.x, s.x, 0, -s.x, c.x);
     const dmat3 about_y(c.y, 0, -s.y, 0, 1, 0, s.y, 0, c.y);
     const dmat3 about_z(c.z, s.z, 0, -s.z, c.z, 0, 0, 0, 1);

@@ -17,8 +17,8 @@ std::vector<char> inward(const Mesh& mesh, const Parts& part) {
     return inward;
 }
 
-// As seen from the middles of a few of each part's faces. A look from where another part touches tells
-// nothing and does not count.
+// Tested at the centres of a few faces of each part. Where another part touches, the result is undefined and
+// does not count.
 Arrangement::Around surroundings(const Mesh& mesh, const Parts& part, const Tree& tree) {
     constexpr std::size_t most_looks = 8;
     const WindingNumber all(tree);
@@ -45,8 +45,8 @@ Arrangement::Around surroundings(const Mesh& mesh, const Parts& part, const Tree
     return result;
 }
 
-// Whether each part has inside on one side and outside on the other; `crossing` counts those that have in one
-// place and not in another.
+// Whether each part has inside on one side and outside on the other; `crossing` counts those of which that is
+// true only in some places.
 std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, const Tree& tree,
                                            std::size_t& crossing) {
     const std::vector<char> is_inward = inward(mesh, part);

@@ -8,36 +8,36 @@
 
 namespace palpate {
 
-/// What hangs together by vertices.
+/// The connected components of a mesh: faces that are connected by vertices.
 struct Parts {
-    std::vector<Index> of;  // each face's part
+    std::vector<Index> of;  // the part of each face
     Index count = 0;
 };
 Parts parts(const Mesh& mesh);
 
-/// Each part's box.
+/// The bounding box of each part.
 std::vector<Bounds> boxes(const Mesh& mesh, const Parts& parts);
 
-/// Each part's area, m².
+/// The area of each part, m².
 std::vector<double> areas(const Mesh& mesh, const Parts& parts);
 
-/// Each part's volume, m³, about the middle of its own box; negative if it is inside out.
+/// The volume of each part, m³, relative to the centre of its own box; negative if it is inside out.
 std::vector<double> volumes(const Mesh& mesh, const Parts& parts);
 
 /// The longest side of each part's box, m.
 std::vector<float> sides(const Mesh& mesh, const Parts& parts);
 
-/// Which parts turn_parts() would turn over: those that lie in no other, if they are inside out; and all, if
-/// all of these are. The mesh, of which `lie` must tell, changes only while it is asked.
+/// Which parts turn_parts() would flip: those outside of all others, if they are inside out; and all parts,
+/// if all of those are. The mesh, to which `lie` must belong, is changed only temporarily.
 std::vector<char> wrong_way_out(Mesh& mesh, const Parts& parts, Arrangement& lie);
 
-/// Turns the faces of those parts for which `turn` is true; a second time turns them back.
+/// Flips the faces of those parts for which `turn` is true; a second call undoes it.
 void turn_over(Mesh& mesh, const Parts& parts, const std::vector<char>& turn);
 
-/// Keeps the faces of those parts for which `keep` is true, and their vertices; returns what went.
+/// Keeps the faces of those parts for which `keep` is true, with their vertices; returns what was dropped.
 Dropped keep_parts(Mesh& mesh, const Parts& parts, const std::vector<char>& keep);
 
-/// Sheets in which a walk over edges with two faces comes back upside down.
+/// The number of non-orientable parts, such as a Möbius band.
 std::size_t one_sided_parts(const Mesh& mesh);
 
 }  // namespace palpate

@@ -18,9 +18,9 @@
 namespace palpate {
 namespace {
 
-constexpr double touching = 1e-5;  // of the longest side
-// How many points are counted in a piece's box, which go with its volume: so many in the largest, but fewer
-// where that would be too many in all; and so many in the smallest, but fewer where these are many.
+constexpr double touching = 1e-5;  // as a part of the longest side
+// How many sample points a piece's box gets, in proportion to its volume: for the largest, but fewer if that
+// would be too many in all; and for the smallest, but fewer if there are many of these.
 constexpr double most_points = 60e3, most_in_all = 2e6;
 constexpr double least_points = 1e3, least_of_many = 64;
 
@@ -35,10 +35,10 @@ std::array<dvec3, 3> corners_of(const Mesh& mesh, Index face) {
     return {dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z])};
 }
 
-// A group for each node of a tree whose faces are all of one; none for the others.
+// For each node of a tree whose faces all belong to one group, that group; none for the others.
 std::vector<Index> one_part_nodes(const Tree& tree, const Parts& part) {
     std::vector<Index> of(tree.nodes.size());
-    for (std::size_t node = of.size(); node-- > 0;) {  // halves stand behind what they are halves of
+    for (std::size_t node = of.size(); node-- > 0;) {  // children come after their parents
         const Tree::Node& box = tree.nodes[node];
         of[node] = part.of[tree.faces[box.first]];
         if (box.second != 0)
@@ -50,7 +50,7 @@ std::vector<Index> one_part_nodes(const Tree& tree, const Parts& part) {
     return of;
 }
 
-// Returns whether all that may touch was looked at.
+// Returns whether the search for touching parts was completed.
 bool unite_touching(const Tree& tree, const Parts& part, Groups& groups) {
     const Mesh& mesh = tree.mesh;
     const std::vector<Index> only = one_part_nodes(tree, part);
@@ -79,7 +79,7 @@ bool holds(const Bounds& box, const Bounds& other) {
            glm::all(glm::lessThanEqual(other.high, box.high));
 }
 
-// Boxes by where they start along the axis on which they overlap least.
+// Sweep and prune: bounding boxes sorted along the axis on which they overlap least.
 class ByStart {
  public:
     explicit ByStart(const std::vector<Bounds>& boxes) : boxes_(boxes), order_(boxes.size()) {
@@ -114,10 +114,10 @@ class ByStart {
     int axis_ = 0;
 };
 
-// Of all parts that wind around a part the smallest says where it lies: in matter if that winds outward, and
-// in a cavity, loose, if inward.
+// Of all parts around a part, the smallest decides where it lies: in matter if that one faces outwards, or
+// loose in a cavity if it faces inwards.
 void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
-    constexpr std::size_t few = 8;  // not worth a tree
+    constexpr std::size_t few = 8;  // too few for a tree
     struct Around {
         Index part = none;
         double volume = std::numeric_limits<double>::max();
@@ -146,14 +146,14 @@ void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
         if (innermost[i].outward) groups.unite(innermost[i].part, i);
 }
 
-// How far apart about so many points stand in a box, on its plane if it is thinner than that, or on its line.
+// The spacing of about so many sample points in a box, in a plane if it is thinner than that, or on a line.
 double spacing_of(dvec3 size, double points) {
     std::sort(&size.x, &size.x + 3);
     return std::max(
         {std::cbrt(size.x * size.y * size.z / points), std::sqrt(size.y * size.z / points), size.z / points});
 }
 
-// The volume that faces wind around more than half, m³: of points evenly spread in their box those inside.
+// The volume with a winding number above a half, m³: estimated by evenly spaced points in the bounding box.
 double counted_volume(const Mesh& mesh, const std::vector<Index>& faces, const Bounds& box, double points) {
     const Tree tree(mesh, faces);
     const WindingNumber winding(tree);

@@ -5,18 +5,19 @@
 #include <deque>
 #include <numeric>
 
-// Ears are clipped: a convex corner whose triangle holds no other corner goes, until three are left. Whatever
-// is clipped, the sides stay sides; so where a polygon crosses itself and no ear is left, any corner may go.
+// Ear clipping: cuts off a convex corner whose triangle contains no other corner, until three are left.
+// Whatever is clipped, the sides stay sides; so if a polygon crosses itself and no ear is left, any corner
+// may be cut off.
 
 namespace palpate {
 namespace {
 
 using Index = std::uint32_t;
 
-// Twice the area of a triangle; above 0 if it turns to the left.
+// Twice the signed area of a triangle; above 0 if it is counter-clockwise.
 double area(dvec2 a, dvec2 b, dvec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-// How a polygon turns, weighted by its area (Newell's sum).
+// The area-weighted normal of a polygon (Newell's method).
 dvec3 normal_of(std::span<const vec3> corners) {
     dvec3 sum(0);
     const dvec3 origin(corners[0]);
@@ -25,11 +26,11 @@ dvec3 normal_of(std::span<const vec3> corners) {
     return sum;
 }
 
-// The polygon as seen along the axis that it faces most, turning to the left. To look along its very normal
-// would show the same, but cost the numbers their exactness.
+// The polygon projected along the coordinate axis nearest to its normal, counter-clockwise. A projection
+// along the normal itself would give the same triangulation, but round the numbers.
 std::vector<dvec2> seen(std::span<const vec3> corners) {
     dvec3 normal = normal_of(corners);
-    if (normal == dvec3(0)) {  // no side to see: then the one from which it looks largest
+    if (normal == dvec3(0)) {  // the normal vanishes: then the projection with the largest extent
         Bounds box;
         for (vec3 p : corners) box.include(p);
         normal = 1.0 / (dvec3(box.high) - dvec3(box.low) + 1e-300);
@@ -45,15 +46,15 @@ std::vector<dvec2> seen(std::span<const vec3> corners) {
 }
 
 struct Triangle {
-    dvec2 a, b, c;  // turns to the left
+    dvec2 a, b, c;  // counter-clockwise
 
     bool is_corner(dvec2 p) const { return p == a || p == b || p == c; }
-    // The least of the three is below 0 outside, 0 on the border.
+    // The least of the three (unscaled barycentric coordinates) is below 0 outside, 0 on the border.
     double inside(dvec2 p) const { return std::min({area(a, b, p), area(b, c, p), area(c, a, p)}); }
 };
 
-// Some corners of the polygon, by place: a tree of boxes, halved again and again. To find one in a triangle,
-// only boxes across its sides need a closer look.
+// Some corners of the polygon in a tree of bounding boxes, to find out whether one lies in a triangle: only
+// boxes that cross the triangle's sides need a closer look.
 class Places {
  public:
     Places(const std::vector<dvec2>& points, std::vector<Index> members)
@@ -72,7 +73,7 @@ class Places {
         slot_[point] = none;
     }
 
-    // Whether one lies in the triangle, but not in a corner of it; `border`: or on its sides.
+    // Whether one lies in the triangle, but not at a corner of it; with `border`, also on its sides.
     bool any_in(const Triangle& triangle, bool border) const {
         return !members_.empty() && any_in(0, triangle, border);
     }
@@ -113,10 +114,10 @@ class Places {
         });
     }
 
-    // Whether one of the triangle's sides has the whole box beyond it.
+    // Whether the whole box lies beyond one of the triangle's sides.
     static bool outside(const Box& box, const Triangle& t) {
         auto beyond = [&](dvec2 a, dvec2 b) {
-            const dvec2 way = b - a;  // the box's corner that lies most to the left of it
+            const dvec2 way = b - a;  // the box's corner that is farthest to its left
             return area(a, b, {way.y > 0 ? box.low.x : box.high.x, way.x > 0 ? box.high.y : box.low.y}) < 0;
         };
         const dvec2 low = glm::min(t.a, glm::min(t.b, t.c)), high = glm::max(t.a, glm::max(t.b, t.c));
@@ -126,8 +127,8 @@ class Places {
 
     const std::vector<dvec2>& points_;
     std::vector<Index> members_;
-    std::vector<Index> slot_;  // of a point among the members; none if it is not or no longer one
-    std::vector<Box> boxes_;   // the halves of box i are 2i + 1 and 2i + 2
+    std::vector<Index> slot_;  // of each point among the members; none if it is not a member, or no longer
+    std::vector<Box> boxes_;   // the children of box i are 2i + 1 and 2i + 2
 };
 
 class Ears {
@@ -142,7 +143,7 @@ class Ears {
           places_(points_, not_convex()) {}
 
     void clip() {
-        // Each rule is tried on all corners that are left, and again on those whose neighbours changed.
+        // Each rule is tried on all remaining corners, and again on those whose neighbours have changed.
         for (Rule rule : {Rule::clear, Rule::touched, Rule::convex, Rule::any}) {
             for (Index i = first_, n = left_; n > 0; --n, i = after_[i]) queue(i);
             while (!queue_.empty() && left_ > 3) {
@@ -158,8 +159,8 @@ class Ears {
  private:
     enum class Rule {
         clear,    // convex, and no other corner in its triangle
-        touched,  // or only on the border of it
-        convex,   // whatever is in its triangle
+        touched,  // other corners only on its border
+        convex,   // whatever its triangle contains
         any
     };
 
@@ -175,19 +176,21 @@ class Ears {
 
     double area(Index i) const { return palpate::area(points_[before_[i]], points_[i], points_[after_[i]]); }
 
-    // What was queued earlier for the same corner no longer holds.
+    // Earlier entries for the same corner are outdated.
     void queue(Index i) { queue_.push_back({i, ++turn_[i]}); }
 
     bool may_go(Index i, Rule rule) const {
         const Triangle ear{points_[before_[i]], points_[i], points_[after_[i]]};
         const double size = area(i);
-        // A corner upon its neighbour, or the tip of a spike without width: an empty triangle does no harm.
+        // A corner that coincides with its neighbour, or the tip of a spike of zero width: a degenerate
+        // triangle does no harm.
         if (size == 0 && glm::dot(ear.b - ear.a, ear.c - ear.b) <= 0) return true;
         if (rule == Rule::any) return true;
         return size > 0 && (rule == Rule::convex || !places_.any_in(ear, rule == Rule::clear));
     }
 
-    // Its neighbours come last now: so triangles pair up all around before any grows, and none becomes a fan.
+    // Its neighbours go to the end of the queue: so ears are clipped evenly all around, and no long fans
+    // arise.
     void cut(Index i) {
         const Index a = before_[i], b = after_[i];
         out_.push_back({a, i, b});
@@ -204,15 +207,15 @@ class Ears {
 
     std::vector<dvec2> points_;
     std::vector<uvec3>& out_;
-    Index left_;       // how many corners
+    Index left_;       // remaining corners
     Index first_ = 0;  // one of them
     std::vector<Index> before_, after_;
-    std::vector<Index> turn_;  // how often a corner was queued
-    Places places_;            // of corners that are not convex: if any corner is in an ear, one of them is
+    std::vector<Index> turn_;  // how often each corner was queued
+    Places places_;            // of the reflex corners: if any corner lies in an ear, one of these does
     std::deque<std::pair<Index, Index>> queue_;
 };
 
-// Along the shorter diagonal, unless that turns a triangle over and the other does not.
+// Along the shorter diagonal, unless that inverts a triangle and the other does not.
 void cut_quad(std::span<const vec3> p, std::vector<uvec3>& out) {
     const dvec3 normal = normal_of(p);
     auto sound = [&](int i) {  // the two triangles on either side of the diagonal from i

@@ -13,11 +13,11 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-// Of a weave at a place counted in threads, in widths of a thread. Each is half round, and goes up where it
-// lies above the other, down where below.
+// The height of a weave, in widths of a thread, at a place counted in threads. Each thread is half round; it
+// rises where it lies above the other, and sinks where it lies below.
 float woven(vec2 p) {
     const ivec2 thread(glm::floor(p));
-    const vec2 round = glm::cos(pi * (p - vec2(thread) - 0.5f));  // 1 in the middle, 0 at the side
+    const vec2 round = glm::cos(pi * (p - vec2(thread) - 0.5f));  // 1 in the middle, 0 at the edge
     const float upright_above = (thread.x + thread.y) % 2 == 0 ? 1.0f : -1.0f;
     const float way = 0.5f * upright_above;
     const float upright = round.x + way * round.y, level = round.y - way * round.x;

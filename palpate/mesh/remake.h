@@ -7,24 +7,25 @@
 
 namespace palpate {
 
-/// What voxels made, and how it differs from what it was made of.
+/// A voxel remesh, and how it differs from the original.
 struct Remade {
     Mesh solid;
-    Dropped hollows{};           // that were filled, as no wall of the mesh bounds them
-    Dropped bits{};              // parts of fewer than 64 voxels, left where gaps and walls are thin
-    std::size_t thin_faces = 0;  // of the mesh, most of which is lost, as its walls are thinner than a voxel
-    double thin = 0;             // of the mesh's area, the share that is lost so
+    Dropped hollows{};           // those that were filled, because no wall of the mesh bounds them
+    Dropped bits{};              // dropped parts of fewer than 64 voxels, which arise at thin gaps and walls
+    std::size_t thin_faces = 0;  // faces of the mesh that are mostly lost, because its walls are thinner than
+                                 // a voxel there
+    double thin = 0;             // their share of the mesh's area
 };
 
-/// A solid made anew by voxels: the surface around all points that the mesh winds around more than half, read
-/// off a grid of distances. The mesh may be open, cut through itself, be nested or in many pieces; only its
-/// faces should turn their fronts outward. The result is closed, turns right, and follows the mesh within
-/// about half a voxel; sharp edges are rounded by as much. It has a cavity where a part of the mesh that
-/// turns inward winds around one, or where three quarters of its wall are one part's and it is four voxels
-/// wide or so: a chamber behind a neck that voxels close. Other hollows, such as what is left between parts
-/// that lie on each other, are filled. `voxel`: m; 0 is 1/300 of the longest side. Memory: 4 bytes for each
-/// voxel of the mesh's box, twice at most. `name`: what errors call the mesh. Throws Error if nothing of it
-/// encloses a voxel's width, or if the grid would have more than 2^28 voxels.
+/// Voxel remeshing: makes a new solid, the surface around all points where the mesh's winding number is above
+/// a half, as an isosurface of a grid of signed distances. The mesh may be open, intersect itself, be nested
+/// or in many pieces; only its faces should be oriented outwards. The result is closed, oriented outwards,
+/// and within about half a voxel of the mesh; sharp edges are rounded by as much. A hollow stays a cavity if
+/// a part of the mesh that faces inwards encloses it, or if three quarters of its wall belong to one part and
+/// it is about four voxels wide: a chamber behind a neck that voxels close. Other hollows, such as gaps
+/// between parts that lie on each other, are filled. `voxel`: m; 0 is 1/300 of the longest side. Memory: at
+/// most 8 bytes for each voxel of the mesh's bounding box. `name`: of the mesh, for errors. Throws Error if
+/// nothing of it encloses a voxel's width, or if the grid would have more than 2^28 voxels.
 Remade remake(const Mesh& mesh, float voxel = 0, const std::string& name = "the mesh",
               const Progress& progress = {});
 

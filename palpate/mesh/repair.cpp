@@ -14,10 +14,10 @@
 namespace palpate {
 namespace {
 
-// What was done so far. A step that is taken again adds to its count.
+// The steps so far. A repeated step adds to its count.
 struct Steps {
     std::vector<Repair> done;
-    double dropped = 0;  // m³, in all
+    double dropped = 0;  // m³, in total
 
     Repair& add(const std::string& what, std::size_t count) {
         auto at =
@@ -32,12 +32,12 @@ struct Steps {
             add("faces too crowded to be searched for parts that touch", 0).count = went.crowded;
         dropped += went.volume;
     }
-    // Of a surface's area.
+    // For a share of the surface's area.
     void add(const std::string& what, std::size_t count, double share) {
         if (count > 0) add(what, count).share += share;
     }
 
-    // What all of it came to, of a solid of this volume in a unit of so many metres.
+    // The result, for a solid of this volume, in a unit of this many metres.
     std::vector<Repair> of(double volume, double unit) && {
         std::erase_if(done, [](const Repair& step) { return step.count == 0; });
         for (Repair& step : done) {
@@ -49,8 +49,8 @@ struct Steps {
     }
 };
 
-// Brings a mesh that is very large or very small to about one metre, and back: by a power of two, which costs
-// no digits. So what is done in between may square lengths.
+// Scales a very large or very small mesh to about one metre, and back: by a power of two, which is exact. So
+// lengths may be squared in between.
 class Handy {
  public:
     explicit Handy(Mesh& mesh) : mesh_(mesh) {
@@ -113,8 +113,8 @@ double area_from(const Mesh& mesh, std::size_t first) {
     return area;
 }
 
-// Where a few faces lie back to back, both go. Where most do, the surface was written from both sides, and
-// one of each two stays.
+// If few faces lie back to back, both are dropped. If most do, the surface was written two-sided, and one of
+// each pair is kept.
 void drop_backs(Mesh& mesh, Steps& steps) {
     Mesh without{mesh.positions, {}, mesh.triangles};
     const std::size_t flaps = drop_flaps(without);
@@ -125,7 +125,7 @@ void drop_backs(Mesh& mesh, Steps& steps) {
     steps.add("copies of faces dropped", drop_copies(mesh));
 }
 
-// What no one misses: what is there twice, or not really there, or too small.
+// Drops what is duplicate, degenerate or too small.
 void clean(Mesh& mesh, const RepairSettings& settings, float tolerance, Steps& steps) {
     constexpr float seam = 1e-5f;  // of the longest side
     const bool open = is_open(mesh);
@@ -148,7 +148,7 @@ void clean(Mesh& mesh, const RepairSettings& settings, float tolerance, Steps& s
     dropped("specks dropped", drop_specks(mesh, settings.specks));
     steps.add("faces without an area removed", drop_flat_faces(mesh));
     steps.add("faces turned to agree with their neighbours", turn_faces(mesh));
-    if (settings.largest)  // before the rest is mended, which what goes anyway might spoil
+    if (settings.largest)  // first, so that the dropped parts cannot spoil the mending of the rest
         dropped("smaller parts dropped", settings.sheet ? keep_largest_sheet(mesh) : keep_largest(mesh));
     if (settings.cavities > 0) {
         const Dropped filled = fill_cavities(mesh, settings.cavities);
@@ -156,8 +156,8 @@ void clean(Mesh& mesh, const RepairSettings& settings, float tolerance, Steps& s
     }
 }
 
-// Drops parts that enclose next to nothing. `closing`: from here on, faces were put in to close holes. What
-// needed a great lid and still encloses little was meant as a sheet.
+// Drops parts that enclose almost nothing. `closing`: the first face that was added to close holes. A part
+// that needed a large lid and still encloses little was meant as a sheet.
 void drop_sheets(Mesh& mesh, std::size_t closing, Steps& steps) {
     const Parts part = parts(mesh);
     const std::vector<double> area = areas(mesh, part);
@@ -167,7 +167,7 @@ void drop_sheets(Mesh& mesh, std::size_t closing, Steps& steps) {
     const std::vector<double> volume = volumes(mesh, part);
     std::vector<char> keep;
     for (Index i = 0; i < part.count; ++i) {
-        const double roundness = std::abs(volume[i]) / std::pow(area[i], 1.5);  // of a ball 0.094
+        const double roundness = std::abs(volume[i]) / std::pow(area[i], 1.5);  // 0.094 for a ball
         keep.push_back(roundness > (lid[i] > 0.25 * area[i] ? 1e-3 : 1e-6));
     }
     const double all = area_from(mesh, 0);
@@ -179,7 +179,8 @@ Error no_inside(const RepairSettings& settings) {
     return Error("no inside", settings.name, "give it a thickness, or use it as a cloth (sheet = true)");
 }
 
-// A Möbius band, not a bottle with a hole: one side only, and more border than face.
+// Whether a non-orientable part is a Möbius band and not a Klein bottle with a hole: its border is long for
+// its area.
 bool is_one_sided_sheet(const Mesh& mesh, std::size_t one_sided) {
     if (one_sided == 0) return false;
     const double border = soundness(mesh).longest_hole;
@@ -187,7 +188,7 @@ bool is_one_sided_sheet(const Mesh& mesh, std::size_t one_sided) {
     return disc > 0.25 * area_from(mesh, 0);
 }
 
-// Leaves of closed parts those that part inside from outside, and what is large enough. Returns how many lie
+// Keeps those closed parts that separate inside from outside and are large enough. Returns how many lie
 // partly inside others.
 std::size_t settle(Mesh& mesh, Arrangement& lie, const RepairSettings& settings, Steps& steps) {
     steps.add("faces without an area removed", drop_flat_faces(mesh));
@@ -195,14 +196,14 @@ std::size_t settle(Mesh& mesh, Arrangement& lie, const RepairSettings& settings,
     steps.add("specks dropped", drop_specks(mesh, settings.specks));
     lie.forget();
     if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh, lie));
-    steps.add("parts turned right way out", turn_parts(mesh, lie));
+    steps.add("parts turned outward", turn_parts(mesh, lie));
     const Nested nested = drop_nested(mesh, lie);
     steps.add("parts dropped that lay inside another", nested.dropped);
     drop_unused(mesh);
     return nested.dropped == 0 ? nested.crossing : nesting(mesh).crossing;
 }
 
-// Makes a solid of the mesh's own faces. Returns why that failed, or nothing.
+// Makes a solid of the mesh's own faces. Returns why that failed; empty if it did not.
 std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& settings, Steps& steps) {
     if (one_sided > 0)
         return fmt::format("{} part{} one side only", one_sided, one_sided == 1 ? " has" : "s have");
@@ -211,7 +212,7 @@ std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& 
     steps.add("holes closed", holes, area_from(mesh, closing) / area_from(mesh, 0));
     drop_sheets(mesh, closing, steps);
     steps.add("faces dropped that lay back to back", drop_flaps(mesh));
-    steps.add("vertices added to part what only touches", part_sheets(mesh));
+    steps.add("vertices added to separate touching sheets", separate_sheets(mesh));
     Arrangement lie(mesh);
     std::size_t crossing = settle(mesh, lie, settings, steps);
     const Intersections cuts = intersections(lie.tree());
@@ -232,15 +233,15 @@ std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& 
     return {};
 }
 
-// Brings what voxels made to about as many faces as there were before, or to as few as can be had without
-// cutting through each other; and without the crumbs that break off where a gap or a neck is narrow.
+// Decimates a voxel remesh to about the original number of faces, or to as few as are possible without
+// self-intersections; and drops the crumbs that break off at narrow gaps and necks.
 void simplify(Mesh& solid, std::size_t faces) {
     constexpr std::size_t fewest = 2000;
     const std::size_t most = parts(solid).count;
     for (std::size_t wanted = std::max(faces, fewest);; wanted *= 2) {
         Mesh simple = solid;
         decimate(simple, wanted);
-        part_sheets(simple);
+        separate_sheets(simple);
         drop_crumbs(simple, most);
         const Intersections cuts = intersections(simple);
         if (cuts.faces.empty() || mend_intersections(simple, cuts) > 0 || wanted > solid.triangles.size()) {
@@ -253,13 +254,13 @@ void simplify(Mesh& solid, std::size_t faces) {
 
 void make_by_voxels(Mesh& mesh, const RepairSettings& settings, float voxel, const std::string& why,
                     const Progress& progress, Steps& steps) {
-    steps.add("parts turned right way out", turn_parts(mesh));
+    steps.add("parts turned outward", turn_parts(mesh));
     Remade made = remake(mesh, voxel, settings.name, progress);
     Mesh& solid = made.solid;
     steps.add("hollows filled that no wall bounds", made.hollows.parts).volume = made.hollows.volume;
-    steps.add("bits dropped that voxels left", made.bits);
+    steps.add("fragments dropped that voxels left", made.bits);
     steps.add("faces lost where walls are thinner than a voxel", made.thin_faces, made.thin);
-    Steps own;  // of what voxels made; only what these drop is news
+    Steps own;  // of the voxel remesh; only what these drop is reported
     Arrangement lie(solid);
     settle(solid, lie, settings, own);
     const double before = volume(solid);
@@ -305,7 +306,7 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
     }
     const std::size_t one_sided = one_sided_parts(mesh);
     if (is_one_sided_sheet(mesh, one_sided)) throw no_inside(settings);
-    std::string why = "so it was asked";
+    std::string why = "as requested";
     if (settings.solid == SolidBy::walls) {
         tell("mending the walls", 0.2);
         Mesh walls = mesh;

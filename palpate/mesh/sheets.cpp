@@ -7,11 +7,11 @@
 namespace palpate {
 namespace {
 
-// By how much the direction to a face turns about an edge, from any one fixed direction: -pi to pi.
+// The dihedral angle of a face about an edge, from an arbitrary fixed direction: -pi to pi.
 class TurnAboutEdge {
  public:
     explicit TurnAboutEdge(dvec3 axis) : axis_(axis) {
-        const dvec3 a = glm::abs(axis);  // a direction well off the axis
+        const dvec3 a = glm::abs(axis);  // a direction that is not nearly parallel to the axis
         const dvec3 off(a.x <= a.y && a.x <= a.z, a.y < a.x && a.y <= a.z, a.z < a.x && a.z < a.y);
         from_ = glm::cross(off, axis);
         side_ = glm::cross(axis, from_) / glm::length(axis);
@@ -22,9 +22,9 @@ class TurnAboutEdge {
     dvec3 axis_, from_, side_;
 };
 
-// Makes twins at an edge of many sides. Matter lies on the way round from a side that runs down to the next
-// that runs up; so in that order these two are a pair, as brackets are, and what is then left goes on as if
-// they were not there. Twice round, because the circle has no beginning.
+// Pairs twins at an edge of many sides, sorted by angle. There is matter between a side that runs down and
+// the next that runs up, so these two are matched like brackets, with nesting. It goes round twice, because a
+// circle has no beginning.
 void pair_by_angle(const Mesh& mesh, Index low, std::span<const Side> sides, std::vector<Index>& twin) {
     const dvec3 foot(mesh.positions[low]);
     const TurnAboutEdge turn(dvec3(mesh.positions[sides[0].other]) - foot);
@@ -53,7 +53,7 @@ void pair_by_angle(const Mesh& mesh, Index low, std::span<const Side> sides, std
     go_round(true);
 }
 
-// Gives each fan of faces around a vertex its own copy of it; the first keeps the old.
+// Gives each fan of faces around a vertex its own copy of the vertex; the first keeps the original.
 void part_vertices(Mesh& mesh, const std::vector<Index>& twin) {
     Groups fans(twin.size());
     for (Index corner = 0; corner < twin.size(); ++corner) {
@@ -78,7 +78,7 @@ void part_vertices(Mesh& mesh, const std::vector<Index>& twin) {
     }
 }
 
-// Cuts a face in two, from `middle` on the side that begins at `corner` to the corner across.
+// Splits a face in two, from `middle` on the side that begins at `corner` to the opposite corner.
 void cut_side(Mesh& mesh, Index corner, Index middle) {
     uvec3 far_half = mesh.triangles[corner / 3];
     far_half[corner % 3] = middle;
@@ -86,10 +86,11 @@ void cut_side(Mesh& mesh, Index corner, Index middle) {
     mesh.triangles.push_back(far_half);
 }
 
-// A fan may come by the same edge twice, at both of its ends: then new ends do not part it. There all sheets
-// but one get a vertex in the middle of the edge; but each face only once, or it would be cut by old numbers.
+// A fan may meet the same edge twice, at both of its ends: then copying the ends does not separate it. There
+// all sheets but one get a vertex at the midpoint of the edge; but each face only once, because its indices
+// change.
 void part_edges(Mesh& mesh, const std::vector<Index>& twin) {
-    std::vector<Index> sides;  // one of each sheet
+    std::vector<Index> sides;  // one side of each sheet
     std::vector<char> taken(mesh.triangles.size());
     for_each_edge(Corners(mesh), [&](Index, std::span<const Side> all) {
         if (all.size() < 3) return;
@@ -127,7 +128,7 @@ std::vector<Index> twins(const Mesh& mesh) {
     return twin;
 }
 
-std::size_t part_sheets(Mesh& mesh) {
+std::size_t separate_sheets(Mesh& mesh) {
     const std::size_t before = mesh.positions.size();
     for (std::size_t last = 0; last != mesh.positions.size();) {
         last = mesh.positions.size();

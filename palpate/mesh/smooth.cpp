@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-// The vertices that each vertex moves towards: all its neighbours, or at an open border only those along the
-// border, so that the border is smoothed as a line and does not creep inwards.
+// The vertices towards which each vertex moves: all its neighbours, or at a border only those along the
+// border, so that the border is smoothed as a curve and does not shrink inwards.
 struct Neighbours {
     std::vector<Index> first, vertices;
 };
@@ -29,7 +29,7 @@ Neighbours neighbours(const Mesh& mesh) {
         std::sort(around.begin(), around.end());
         for (auto at = around.begin(); at != around.end();) {
             auto end = std::upper_bound(at, around.end(), *at);
-            (end - at == 1 ? border : inner).push_back(*at);  // a border's edge has one face
+            (end - at == 1 ? border : inner).push_back(*at);  // a border edge has one face
             at = end;
         }
         const std::vector<Index>& chosen = border.empty() ? inner : border;
@@ -40,7 +40,7 @@ Neighbours neighbours(const Mesh& mesh) {
     return result;
 }
 
-// Moves every vertex by `step` of the way to the mean of its neighbours.
+// A Laplacian step: moves every vertex by `step` of the way to the mean of its neighbours.
 void move_to_mean(const Neighbours& near, float step, const std::vector<vec3>& from, std::vector<vec3>& to) {
     parallel_for(from.size(), 8192, [&](std::size_t v) {
         vec3 sum(0);
@@ -53,8 +53,8 @@ void move_to_mean(const Neighbours& near, float step, const std::vector<vec3>& f
 }  // namespace
 
 void smooth(Mesh& mesh, int passes) {
-    // Taubin's pair: what the first step shrinks, the second grows back, all but the ripples of a few edges'
-    // length. They cross at a spatial frequency of 1/0.5 - 1/0.53 = 0.11, near the 0.1 that he advises.
+    // Taubin's pair λ, μ: the second step inflates what the first shrinks, except ripples of a few edge
+    // lengths. The pass-band frequency is 1/0.5 - 1/0.53 = 0.11, near the 0.1 that he advises.
     constexpr float shrink = 0.5f, grow = -0.53f;
     if (passes <= 0) return;
     const Neighbours near = neighbours(mesh);

@@ -16,16 +16,16 @@ namespace palpate {
 namespace {
 
 constexpr float level_set_band = 3;  // voxels; no distance is larger
-// Half a voxel's diagonal: whatever passes through a voxel is no farther from its middle.
+// Half a voxel's diagonal: a surface that passes through a voxel is no farther from its centre.
 constexpr float wall = 0.8660254f;
-// So far from the surface distances are exact: as far as it takes to find between voxels where it passes.
+// Up to this distance from the surface, distances are exact: far enough to locate the surface between voxels.
 constexpr float exact = 1.75f;
 constexpr double most_bytes = 2e9;
 
 constexpr int wide = 8;  // voxels, of a block
 constexpr std::size_t in_block = wide * wide * wide;
 
-// Throws unless a grid all over the mesh's box would fit; the band alone takes less.
+// Throws unless a dense grid over the mesh's bounding box would fit; the narrow band takes less.
 void check_memory(vec3 size, float voxel) {
     const dvec3 voxels = glm::ceil(dvec3(size) / double(voxel)) + 2.0 * (level_set_band + 1);
     const double bytes = voxels.x * voxels.y * voxels.z * sizeof(float);
@@ -40,7 +40,7 @@ bool is_open_when_welded(Mesh mesh) {
     return soundness(mesh).open_edges > 0;
 }
 
-// The voxels around one, which share a side (the first six), an edge or a corner with it.
+// The neighbours of a voxel, which share a face (the first six), an edge or a corner with it.
 const std::array<ivec3, 26> around = [] {
     std::array<ivec3, 26> ways{};
     std::size_t sides = 0, others = 6;
@@ -52,13 +52,14 @@ const std::array<ivec3, 26> around = [] {
 
 }  // namespace
 
-// Voxels in blocks, of which those far from the surface hold nothing but on which side they lie. Its unit is
-// the voxel, counted from below the mesh's lowest corner: so small units and places far off cost no digits.
+// A sparse grid of voxel blocks; those far from the surface store only on which side they lie. Its unit is
+// the voxel, counted from below the mesh's lowest corner: so small units and distant places lose no
+// precision.
 struct SignedDistance::Grid {
     vec3 origin;  // of the voxel (0, 0, 0), m
     float voxel;  // m
     ivec3 blocks;
-    std::vector<Index> first;   // by block: its voxels in `values`, or none
+    std::vector<Index> first;   // by block: the start of its voxels in `values`, or none
     std::vector<float> far;     // by block: the distance where it has no voxels of its own
     std::vector<float> values;  // x fastest
 
@@ -73,7 +74,7 @@ struct SignedDistance::Grid {
         const int b = int(block);
         return wide * ivec3(b % blocks.x, b / blocks.x % blocks.y, b / blocks.x / blocks.y);
     }
-    // The number of a voxel that is held and has a value of its own; none of others.
+    // The index of a voxel with a stored value; none for others.
     Index number_of(ivec3 p) const {
         const Index start = first[block_of(p)];
         const ivec3 in = p % wide;
@@ -95,7 +96,7 @@ struct SignedDistance::Grid {
     }
 
  private:
-    // Of a voxel and those beyond it, x in the lowest bit; most often all are of one block.
+    // The eight values of a voxel and its upper neighbours, x in the lowest bit; mostly all are in one block.
     void corners(ivec3 low, float (&all)[8]) const {
         const ivec3 in = low & (wide - 1);
         if (!holds(low) || std::max({in.x, in.y, in.z}) == wide - 1) {
@@ -112,9 +113,9 @@ struct SignedDistance::Grid {
 
 namespace {
 
-// How the grid of a mesh, whose unit is the voxel, is filled. Walls are the voxels that the surface passes
-// through. What can be reached from outside without passing through a wall is outside, and so are the walls
-// that lie on that side of the surface; all else is inside.
+// Fills the grid of a mesh, whose unit is the voxel. Walls are the voxels that the surface passes through. A
+// flood fill from outside that does not pass through walls finds the outside; walls on that side of the
+// surface belong to it, too. Everything else is inside.
 class Filling {
  public:
     Filling(const Mesh& mesh, SignedDistance::Grid& grid) : mesh_(mesh), tree_(mesh), grid_(grid) {}
@@ -132,7 +133,7 @@ class Filling {
     }
 
  private:
-    // Whether a voxel is known to lie outside.
+    // Whether a voxel is known to be outside.
     bool outside(ivec3 p) const {
         if (!grid_.holds(p)) return true;
         const Index i = grid_.number_of(p);
@@ -140,13 +141,13 @@ class Filling {
     }
     bool is_wall(Index i) const { return grid_.values[i] <= wall; }
 
-    // The number of a voxel whose nearest face is known; none of others.
+    // The index of a voxel whose nearest face is known; none for others.
     Index measured(ivec3 p) const {
         const Index i = grid_.holds(p) ? grid_.number_of(p) : none;
         return i == none || face_[i] == none ? none : i;
     }
 
-    // Calls look(voxel, its number) for each that has a value of its own, all processors at once.
+    // Calls look(voxel, its index) for each voxel with a stored value, in parallel.
     template <class Look>
     void for_each_voxel(const Look& look) const {
         parallel_for(near_.size(), 8, [&](std::size_t i) {
@@ -165,10 +166,10 @@ class Filling {
         return weights.x * a + weights.y * b + weights.z * c;
     }
 
-    // From the middle of a cube of voxels to the farthest.
+    // The distance from the centre of a cube of voxels to the farthest voxel.
     static float reach_of(int size) { return 0.5f * std::sqrt(3.0f) * float(size - 1); }
 
-    // The face nearest to the middle of a cube of voxels, if any voxel of it may be within the band.
+    // The face nearest to the centre of a cube of voxels, if any of its voxels may be within the band.
     Tree::Nearest nearest(ivec3 low, int size, Index guess) const {
         return tree_.nearest(vec3(low) + 0.5f * float(size - 1), reach_of(size) + level_set_band, guess);
     }
@@ -189,8 +190,8 @@ class Filling {
         outside_.assign(grid_.values.size(), false);
     }
 
-    // In a cube of voxels, by halves. `guess`: a face that is near, if one is known. Only of those by the
-    // surface the nearest face is found; the others that may be within the band are marked.
+    // Works on a cube of voxels, by recursive subdivision. `guess`: a nearby face, if one is known. The
+    // nearest face is found only for voxels at the surface; others that may be within the band are marked.
     void measure(ivec3 low, int size, Index guess) {
         const Tree::Nearest found = nearest(low, size, guess);
         if (found.face == none) return;
@@ -211,7 +212,7 @@ class Filling {
         if (found.face != none) grid_.values[i] = found.distance, face_[i] = found.face;
     }
 
-    // From the grid's corner: nothing of the mesh is near its rim.
+    // The flood fill starts at the grid's corner, since the mesh is nowhere near its rim.
     void flood() {
         std::vector<ivec3> waiting;
         auto reach = [&](ivec3 p) {
@@ -236,7 +237,7 @@ class Filling {
         }
     }
 
-    // Reaches all voxels beside a block.
+    // Reaches all voxels next to a block.
     template <class Reach>
     static void reach_around(ivec3 low, const Reach& reach) {
         for (int axis = 0; axis < 3; ++axis)
@@ -251,7 +252,7 @@ class Filling {
                     }
     }
 
-    // A wall lies outside if it is on the same side of the surface as a voxel beside it that was reached.
+    // A wall is outside if it is on the same side of the surface as a neighbouring voxel that was reached.
     void turn_walls() {
         for_each_voxel([&](ivec3 p, Index i) {
             if (!is_wall(i)) return;
@@ -266,8 +267,8 @@ class Filling {
         });
     }
 
-    // What parts nothing from outside, as where a mesh cuts through itself or has a cavity, is no surface of
-    // the solid.
+    // Faces that do not separate inside from outside, as where a mesh intersects itself or has a cavity, are
+    // not part of the solid's surface.
     void forget_inner_walls() {
         std::vector<char> inner(face_.size(), false);
         for_each_voxel([&](ivec3 p, Index i) {
@@ -280,8 +281,8 @@ class Filling {
             if (inner[i]) face_[i] = none, grid_.values[i] = level_set_band;
     }
 
-    // Ring by ring, the voxels of the band whose nearest face is not known get the nearest of those that
-    // their neighbours have.
+    // Ring by ring, the voxels of the band without a nearest face get the nearest of their neighbours' faces
+    // (a distance transform by propagation).
     void spread() {
         std::vector<Found> rest;
         for (std::size_t block : near_)
@@ -323,15 +324,15 @@ class Filling {
     const Mesh& mesh_;
     Tree tree_;
     SignedDistance::Grid& grid_;
-    std::vector<std::size_t> near_;        // blocks whose voxels have values of their own
-    std::vector<Index> face_;              // by voxel: the nearest, as far as is known
+    std::vector<std::size_t> near_;        // blocks whose voxels have stored values
+    std::vector<Index> face_;              // by voxel: the nearest face, as far as known
     std::vector<char> in_band_, outside_;  // by voxel
 };
 
 }  // namespace
 
 SignedDistance::SignedDistance(const Mesh& mesh, float voxel) {
-    check(mesh, "the mesh whose distance is wanted");
+    check(mesh, "the mesh of a signed distance");
     if (!(voxel > 0))
         throw Error(fmt::format("a voxel of {} m", voxel), "the signed distance", "use a width above zero");
     const Error nothing("nothing inside at this voxel size", "the mesh",
@@ -339,7 +340,7 @@ SignedDistance::SignedDistance(const Mesh& mesh, float voxel) {
     if (mesh.triangles.empty()) throw nothing;
     const Bounds box = bounds(mesh);
     check_memory(box.size(), voxel);
-    // Half a voxel keeps a box's walls off the voxels themselves.
+    // An offset by half a voxel keeps axis-aligned walls off the voxel centres.
     const float margin = level_set_band + 1.5f;
     grid_ = std::make_unique<Grid>();
     grid_->origin = box.low - margin * voxel;
@@ -351,7 +352,7 @@ SignedDistance::SignedDistance(const Mesh& mesh, float voxel) {
     Mesh small{mesh.positions, {}, mesh.triangles};
     for (vec3& p : small.positions) p = (p - grid_->origin) / voxel;
     Filling(small, *grid_).fill();
-    // A closed sheet thinner than a voxel has no inside to be seen either, but nothing is wrong with it.
+    // A closed sheet thinner than a voxel shows no inside, too, but is valid.
     const bool has_inside = std::ranges::any_of(grid_->values, [](float value) { return value < -0.1f; });
     if (!has_inside && is_open_when_welded(mesh)) throw nothing;
 }

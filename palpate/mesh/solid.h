@@ -6,14 +6,14 @@
 
 namespace palpate {
 
-/// Signed distance from a closed mesh, negative inside, exact near the surface and cut off three voxels away
-/// from it. What cannot be reached from outside is inside, whichever way the faces turn. So holes smaller
-/// than a voxel do no harm, and a cavity without a wider way out counts as solid.
+/// The signed distance from a closed mesh, negative inside: exact near the surface, and clamped three voxels
+/// away from it (a narrow band). Inside is what a flood fill from outside does not reach, whatever the
+/// orientation of the faces. So holes smaller than a voxel do no harm, and a closed cavity counts as solid.
 class SignedDistance {
  public:
-    /// `voxel`: the width of its grid, m; the finest detail it sees. A closed part thinner than that has no
-    /// negative distances. Throws Error if the mesh is open and has no inside, or if the grid would need more
-    /// than 2 GB.
+    /// `voxel`: the spacing of its grid, m; the finest detail it resolves. A closed part thinner than that
+    /// has no negative distances. Throws Error if the mesh is open and has no inside, or if the grid would
+    /// need more than 2 GB.
     SignedDistance(const Mesh& mesh, float voxel);
     ~SignedDistance();
     SignedDistance(SignedDistance&&) noexcept;

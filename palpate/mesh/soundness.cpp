@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-// Counts edges by what is wrong with them. Corners that a shared edge holds together grow into fans: a vertex
-// with more than one is where sheets only touch. Open edges grow into the borders of holes.
+// Counts edges by their defects. Corners connected by shared edges are united into fans: at a vertex with
+// more than one fan, sheets only touch. Open edges are united into the borders of holes.
 void look_at_edges(const Mesh& mesh, Soundness& found) {
     const Corners corners(mesh);
     Groups fans(3 * mesh.triangles.size()), holes(mesh.positions.size());
@@ -84,7 +84,7 @@ void look_at_parts(const Mesh& mesh, Soundness& found) {
 }  // namespace
 
 Soundness soundness(const Mesh& mesh) {
-    Soundness found;  // to which each adds what no other does
+    Soundness found;  // each task fills different members
     parallel_invoke([&] { look_at_edges(mesh, found); }, [&] { look_at_faces(mesh, found); },
                     [&] { look_at_parts(mesh, found); },
                     [&] { found.one_sided_parts = one_sided_parts(mesh); });

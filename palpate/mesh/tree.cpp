@@ -13,8 +13,8 @@ namespace {
 
 constexpr Index most_in_a_leaf = 4;
 
-// How many nodes a tree over so many faces has, and a tree over one more. Of both, halves are of two sizes
-// that differ by one again: so it takes a step for each time that the number can be halved.
+// How many nodes a tree over n faces has, and a tree over n + 1. Their halves have two sizes, which differ by
+// one again, so this takes one step for each level.
 std::pair<Index, Index> nodes_over(Index count) {
     if (count < most_in_a_leaf) return {1, 1};
     const auto [less, more] = nodes_over(count / 2);
@@ -23,8 +23,8 @@ std::pair<Index, Index> nodes_over(Index count) {
     return {count == most_in_a_leaf ? 1 : even, odd};
 }
 
-// Since it is known beforehand how many nodes a half has, both halves are built at once, and come out the
-// same whoever builds them.
+// Since the number of nodes of a subtree is known beforehand, both subtrees are built in parallel, and the
+// result does not depend on the number of threads.
 class Halving {
  public:
     explicit Halving(Tree& tree) : mesh_(tree.mesh), tree_(tree), placed_(tree.faces.size()) {
@@ -64,7 +64,7 @@ class Halving {
         here.high = glm::max(tree_.nodes[node + 1].high, tree_.nodes[here.second].high);
     }
 
-    // Puts the half of the faces that lie lower along the longest axis first.
+    // Partitions the faces at the median along the longest axis.
     void part_by_middle(Index first, Index count) {
         Bounds middles;
         for (Index i = first; i < first + count; ++i) middles.include(placed_[i].middle);
@@ -86,14 +86,14 @@ class Halving {
         leaf.low = box.low, leaf.high = box.high;
     }
 
-    static constexpr Index worth_sharing = 4096;  // faces, of a task of its own
+    static constexpr Index worth_sharing = 4096;  // faces, for a task of its own
 
     const Mesh& mesh_;
     Tree& tree_;
-    std::vector<Placed> placed_;  // only the tree's own, which may be few of the mesh
+    std::vector<Placed> placed_;  // only the tree's faces, which may be few of the mesh's
 };
 
-// From a box. Inlined because most of the time of a question is spent here.
+// The squared distance from a box. Inlined because queries spend most of their time here.
 [[gnu::always_inline]] inline float distance_squared(vec3 low, vec3 high, vec3 p) {
     const vec3 off = glm::max(glm::max(low - p, p - high), vec3(0));
     return glm::dot(off, off);
@@ -115,12 +115,12 @@ Tree::Tree(const Mesh& all, std::vector<Index> some) : faces(std::move(some)), m
 
 std::vector<Tree::Plate> Tree::plates() const {
     std::vector<Plate> plates(nodes.size());
-    std::vector<double> size(nodes.size());  // m², whichever way faces look
-    // First `centre` is the sum of the faces' own, each by its size.
+    std::vector<double> size(nodes.size());  // m², the sum of areas regardless of orientation
+    // At first `centre` is the area-weighted sum of the faces' centres.
     parallel_for(nodes.size(), 4096, [&](std::size_t i) {
         if (nodes[i].second == 0) size[i] = add_faces(nodes[i], plates[i]);
     });
-    for (std::size_t i = nodes.size(); i-- > 0;) {  // halves stand behind what they are halves of
+    for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
         if (nodes[i].second == 0) continue;
         for (const std::size_t half : {i + 1, std::size_t(nodes[i].second)}) {
             plates[i].area += plates[half].area;
@@ -160,7 +160,7 @@ Tree::Nearest Tree::nearest(vec3 p, float most, Index guess) const {
     auto look_at = [&](Index other) {
         const uvec3 t = mesh.triangles[other];
         const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-        // Its box is looked at first, which takes a tenth of the time and rules out most.
+        // Its bounding box is tested first, which takes a tenth of the time and rules out most faces.
         if (!(distance_squared(glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c), p) < best)) return;
         const vec3 weights = nearest_weights(p, a, b, c);
         const vec3 off = weights.x * a + weights.y * b + weights.z * c - p;
@@ -183,7 +183,7 @@ Tree::Nearest Tree::nearest(vec3 p, float most, Index guess) const {
             for (Index i = node.first; i < node.first + node.count; ++i) look_at(faces[i]);
             continue;
         }
-        // The nearer half last, so that it is looked at first.
+        // Pushes the nearer child last, so that it is visited first.
         const Wait first{wait.node + 1, squared_to(wait.node + 1)},
             second{node.second, squared_to(node.second)};
         const bool swap = first.squared < second.squared;

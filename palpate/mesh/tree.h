@@ -6,36 +6,35 @@
 
 namespace palpate {
 
-/// Boxes in boxes over the faces of a mesh, halved by their middles: as deep as the logarithm of their
-/// number, however they lie. A question to many faces is asked of few.
+/// A bounding volume hierarchy (BVH) over the faces of a mesh: a binary tree of axis-aligned bounding boxes,
+/// split at the median, so its depth is the logarithm of the number of faces.
 struct Tree {
     struct Node {
         vec3 low, high;
-        Index first, count;  // its faces, in `faces`
-        Index second;        // of two halves the second; the first is the node behind this. 0: not halved
+        Index first, count;  // the range of its faces in `faces`
+        Index second;        // the second child; the first is the next node. 0: a leaf
     };
-    /// A node's faces as seen from afar: a single flat one.
+    /// A node's faces in the far field: a single flat plate (the dipole of Barill et al. 2018).
     struct Plate {
-        dvec3 area{0};     // normal times area, m²
+        dvec3 area{0};     // the sum of normal times area, m²
         dvec3 centre{0};   // m
         double reach = 0;  // m, from the centre to the farthest corner of the node's box, or more
     };
     std::vector<Plate> plates() const;
 
     std::vector<Node> nodes;   // nodes[0] holds all; none if the mesh has no faces
-    std::vector<Index> faces;  // by node
+    std::vector<Index> faces;  // ordered by node
 
-    /// Over all faces, or over these. The mesh must outlive it, unchanged.
+    /// Over all faces, or over these. The mesh must outlive the tree and stay unchanged.
     explicit Tree(const Mesh& mesh);
     Tree(const Mesh& mesh, std::vector<Index> faces);
 
     struct Nearest {
         float distance;
-        Index face;  // of the mesh; none if no face is nearer than was asked
+        Index face;  // of the mesh; none if no face is nearer than `most`
     };
-    /// The face nearest to a point; at `most`, if none is nearer. `guess`: a face that may be near, so that
-    /// less is looked at. Any unit, but neither so large nor so small that squares of lengths do not fit a
-    /// float.
+    /// The face nearest to a point; none, with distance `most`, if none is nearer than that. `guess`: a face
+    /// that may be near, to speed up the search. In any unit in which squares of lengths fit a float.
     Nearest nearest(vec3 point, float most, Index guess = none) const;
     float distance(vec3 point, float most) const { return nearest(point, most).distance; }
 

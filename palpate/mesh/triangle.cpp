@@ -16,7 +16,7 @@ Vector nearest(Vector p, Vector a, Vector b, Vector c) {
         const Real y = (cc * bp - bc * cp) / area, z = (bb * cp - bc * bp) / area;
         if (y >= 0 && z >= 0 && y + z <= 1) return {1 - y - z, y, z};
     }
-    // Outside: the nearest point of the nearest side.
+    // Outside, it is the nearest point of the nearest side.
     Vector best(1, 0, 0);
     Real shortest = std::numeric_limits<Real>::max();
     auto try_side = [&](Vector from, Vector to, int i, int j) {
@@ -43,7 +43,7 @@ double distance(dvec3 p, const ThreePoints& t) {
     return glm::distance(p, w.x * t[0] + w.y * t[1] + w.z * t[2]);
 }
 
-// Whether a segment passes a triangle's plane no farther than `reach` from it.
+// Whether a segment crosses a triangle's plane within `reach` of the triangle.
 bool passes(dvec3 from, dvec3 to, const ThreePoints& t, double reach) {
     const dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
     const double start = glm::dot(normal, from - t[0]), end = glm::dot(normal, to - t[0]);
@@ -51,7 +51,7 @@ bool passes(dvec3 from, dvec3 to, const ThreePoints& t, double reach) {
            distance(glm::mix(from, to, start / (start - end)), t) <= reach;
 }
 
-// Whether two segments come that near where neither has an end.
+// Whether two segments come that near at inner points of both.
 bool boxes_are_near(const ThreePoints& a, const ThreePoints& b, double reach) {
     const auto low = [](const ThreePoints& c) { return glm::min(glm::min(c[0], c[1]), c[2]); };
     const auto high = [](const ThreePoints& c) { return glm::max(glm::max(c[0], c[1]), c[2]); };

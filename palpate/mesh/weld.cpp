@@ -17,8 +17,8 @@ struct HashPlace {
     }
 };
 
-// The kept vertices, findable by place: in cells twice as wide as the tolerance, so that all that can be near
-// a point lies in at most eight of them, and mostly in a few. With no tolerance each place is its own cell.
+// The kept vertices in a hash grid: its cells are twice as wide as the tolerance, so everything near a point
+// lies in at most eight of them. With tolerance 0, each place is its own cell.
 class Kept {
  public:
     Kept(const std::vector<vec3>& positions, float tolerance)
@@ -51,10 +51,10 @@ class Kept {
     const std::vector<vec3>& positions_;
     float tolerance_;
     std::unordered_map<dvec3, Index, HashPlace> top_;  // the last vertex added to each cell
-    std::vector<Index> below_;                         // the one added to the same cell before
+    std::vector<Index> below_;                         // the vertex added to the same cell before
 };
 
-// Welds the vertices for which `chosen` is true, each to one before it.
+// Welds the vertices for which `chosen` is true, each to an earlier one.
 template <class F>
 std::size_t weld_chosen(Mesh& mesh, float tolerance, F chosen) {
     if (!(tolerance >= 0))

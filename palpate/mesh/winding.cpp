@@ -6,8 +6,8 @@
 namespace palpate {
 namespace {
 
-// For each corner, the corner from which the one other face at this edge begins it, whichever way it runs;
-// none at a border, and where there are more than two.
+// For each corner, the corner from which the other face at this edge begins it, in either direction; none at
+// a border and at edges with more than two faces.
 std::vector<Index> corners_beyond(const Mesh& mesh) {
     std::vector<Index> beyond(3 * mesh.triangles.size(), none);
     for_each_edge(Corners(mesh), [&](Index low, std::span<const Side> sides) {
@@ -18,10 +18,10 @@ std::vector<Index> corners_beyond(const Mesh& mesh) {
     return beyond;
 }
 
-// Which faces to turn, sheet by sheet, a sheet being what edges with two faces hold together.
+// Which faces to flip, sheet by sheet. A sheet is a set of faces connected by edges with two faces.
 struct Turning {
     std::vector<char> turn;
-    std::vector<Index> one_sided;  // a face of each sheet in which a walk comes back upside down
+    std::vector<Index> one_sided;  // a face of each non-orientable sheet
 };
 
 Turning find_turning(const Mesh& mesh) {
@@ -54,7 +54,7 @@ Turning find_turning(const Mesh& mesh) {
             }
         }
         if (one_sided) result.one_sided.push_back(first);
-        if (2 * turned > sheet.size())  // most faces have it right
+        if (2 * turned > sheet.size())  // the majority decides
             for (Index face : sheet) result.turn[face] ^= 1;
     }
     return result;

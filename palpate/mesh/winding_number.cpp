@@ -11,12 +11,11 @@ namespace palpate {
 namespace {
 
 constexpr double whole_sphere = 4 * std::numbers::pi;
-constexpr double far_off = 3;     // in reaches of a plate: for the error that the header promises
-constexpr double far_around = 5;  // in radii of a ball, as far as a slope is enough
+constexpr double far_off = 3;     // in radii of a plate: gives the error that the header promises
+constexpr double far_around = 5;  // in radii of a ball: beyond this a linear approximation is enough
 
-// Half a triangle's solid angle, as where it leads on a circle: from -pi to pi (Van Oosterom and Strackee
-// 1983). `up` is 0 if nothing of it is seen. Inlined because most of the time of a winding number is spent
-// here.
+// Half the solid angle of a triangle, as a direction (along, up) in the plane: from -pi to pi (Van Oosterom
+// and Strackee 1983). `up` is 0 if the solid angle is. Inlined because most of the time is spent here.
 struct Half {
     double along, up;
 };
@@ -27,7 +26,8 @@ struct Half {
             glm::dot(a, glm::cross(b, c))};
 }
 
-// A sum of such angles that costs a single arc tangent: where they lead together, and how often round.
+// A sum of such angles with a single arc tangent: multiplies the directions as complex numbers, and counts
+// full turns.
 class Angles {
  public:
     void add(Half angle) {
@@ -37,13 +37,14 @@ class Angles {
         along_ = both.along, up_ = both.up;
         if (was_upper && angle.up > 0 && !is_upper()) ++rounds_;
         if (!was_upper && angle.up < 0 && is_upper()) --rounds_;
-        const double size = std::abs(along_) + std::abs(up_);  // of no meaning, but must fit
+        const double size = std::abs(along_) + std::abs(up_);  // its value has no meaning, but must not
+                                                               // overflow
         if (size > most || size < 1 / most) along_ /= size, up_ /= size;
     }
     double sum() const { return std::atan2(up_, along_) + 2 * std::numbers::pi * rounds_; }
 
  private:
-    static constexpr double most = 1e100;  // seldom reached, as a division takes long
+    static constexpr double most = 1e100;  // large, so that the slow division is rare
 
     bool is_upper() const { return up_ > 0 || (up_ == 0 && along_ < 0); }
 
@@ -73,7 +74,7 @@ double exact_winding(const Mesh& mesh, std::span<const Index> faces, dvec3 point
     return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-// What is far, and what is near.
+// The far field, and the near faces.
 struct WindingNumber::Sum {
     double plates = 0;
     Angles faces{};
@@ -107,7 +108,8 @@ WindingNumber::Ball WindingNumber::ball(dvec3 centre, double radius, const Ball&
     return result;
 }
 
-// Adds a node to what is far if it is, or else to what is near: whole, or in halves if it is large.
+// Adds a node to the far field if it is far; otherwise to the near ones, whole or, if it is large, child by
+// child.
 void WindingNumber::gather(Index node, Ball& ball) const {
     const Tree::Plate& plate = plates_[node];
     const dvec3 way = plate.centre - ball.centre;

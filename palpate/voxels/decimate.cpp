@@ -9,10 +9,10 @@ std::size_t decimate(Mesh& mesh, std::size_t faces) {
     if (before <= faces) return 0;
     mesh.triangles = simplified(mesh, faces);
     drop_attributes(mesh);
-    // meshoptimizer collapses edges without asking whether a tunnel or a thin neck closes, so two things are
-    // left where one did: a face lying on the back of another, and an edge in which two sheets touch.
+    // meshoptimizer collapses edges even where that closes a tunnel or a thin neck, which leaves faces back
+    // to back, and edges where two sheets touch.
     drop_flaps(mesh);
-    part_sheets(mesh);
+    separate_sheets(mesh);
     drop_unused(mesh);
     return before - mesh.triangles.size();
 }

@@ -15,12 +15,12 @@ namespace {
 
 using openvdb::FloatGrid;
 
-// One of OpenVDB's blocks: 8 voxels wide.
+// A leaf node of OpenVDB: 8 voxels wide.
 using Block = FloatGrid::TreeType::LeafNodeType;
 constexpr int wide = Block::DIM;
 
-// The volume as OpenVDB wants it: inside is what lies below zero, and all beyond the volume is as far outside
-// as its lowest voxel. Scaled to within -1 and 1, so that no difference of two is too large for a float.
+// The volume as a level set for OpenVDB: negative inside, and everything beyond the volume is as far outside
+// as its lowest voxel. Scaled to between -1 and 1, so that no difference overflows a float.
 class ScaledVolume {
  public:
     ScaledVolume(const Volume& volume, float iso, float lowest, float highest)
@@ -44,7 +44,7 @@ class ScaledVolume {
     float outside_;
 };
 
-// Whether a block and the voxels right around it are all on one side, like the first of them.
+// Whether a block and the voxels right around it are all on the same side.
 bool on_one_side(const ScaledVolume& values, ivec3 low) {
     const bool side = values.inside(low.x, low.y, low.z);
     for (int z = low.z - 1; z <= low.z + wide; ++z)
@@ -54,8 +54,8 @@ bool on_one_side(const ScaledVolume& values, ivec3 low) {
     return true;
 }
 
-// Only blocks that the surface touches hold values; of the others OpenVDB need know no more than the side. So
-// the memory goes with the surface.
+// Only blocks at the surface hold values; for the others OpenVDB stores only the side (a narrow band). So
+// memory is proportional to the surface.
 FloatGrid::Ptr inside_below_zero(const ScaledVolume& values, ivec3 dims) {
     auto grid = FloatGrid::create(values.outside());
     auto& tree = grid->tree();
@@ -76,7 +76,7 @@ FloatGrid::Ptr inside_below_zero(const ScaledVolume& values, ivec3 dims) {
     return grid;
 }
 
-// Cuts a quad along its shorter diagonal. Each diagonal joins two cells that no other quad joins, so the
+// Splits a quad along its shorter diagonal. Each diagonal joins two cells that no other quad joins, so the
 // surface stays as sound as the quads were.
 void add_quad(Mesh& mesh, openvdb::Vec4I q, bool turn_over) {
     if (turn_over) std::swap(q[1], q[3]);
@@ -91,8 +91,8 @@ void add_quad(Mesh& mesh, openvdb::Vec4I q, bool turn_over) {
 
 Mesh isosurface(const Volume& volume, float iso) {
     if (volume.count() == 0 || volume.values.size() != volume.count())
-        throw Error("a volume of another number of values than its dims say", volume.name,
-                    "give it one a voxel");
+        throw Error("a volume whose number of values differs from the product of its dims", volume.name,
+                    "give one value for each voxel");
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
     if (!(*low < iso && iso < *high))
         throw Error(fmt::format("no surface at the value {} (its voxels hold {} to {})", iso, *low, *high),

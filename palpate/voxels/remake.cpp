@@ -15,20 +15,20 @@ namespace {
 
 constexpr float default_voxels = 300;    // along the longest side
 constexpr double most_voxels = 1 << 28;  // 1 GB
-constexpr int margin = 3;                // voxels of outside all around
-constexpr float band = 2;                // voxels; no depth is larger
+constexpr int margin = 3;                // voxels outside, on each side
+constexpr float band = 2;                // voxels; depths are clamped to this
 constexpr float hole_slope = 8;          // voxels per winding; see across()
 
-// How deep each voxel lies inside a mesh whose unit is the voxel. First on which side it lies, block by
-// block: one that is far from the surface needs a single look. Then how far from the surface, only where one
-// side meets the other: nothing else is read off the grid.
+// The depth of each voxel inside a mesh whose unit is the voxel. First its side, block by block: a block far
+// from the surface needs a single test. Then the distance to the surface, only where inside meets outside,
+// since the isosurface needs no other.
 class Depths {
  public:
     Depths(const Mesh& mesh, Volume& volume) : tree_(mesh), winding_(tree_), volume_(volume) {}
 
     void fill(ivec3 low, int size) { fill(low, size, none, winding_.ball(middle(low, size), reach(size))); }
 
-    // In the layer z, when all sides are known.
+    // For the layer z, when all sides are known.
     void find_border(int z) {
         std::vector<Index>& border = border_[std::size_t(z)];
         const std::vector<float>& value = volume_.values;
@@ -45,7 +45,7 @@ class Depths {
             }
     }
 
-    // In that layer, when all of the border is found.
+    // For that layer, when the border is complete.
     void measure_border(int z) {
         Index guess = none;
         for (Index i : border_[std::size_t(z)]) {
@@ -63,7 +63,7 @@ class Depths {
     static dvec3 middle(ivec3 low, int size) { return dvec3(low) + 0.5 * (size - 1); }
     static double reach(int size) { return 0.5 * std::sqrt(3.0) * (size - 1); }
 
-    // `guess`: a face that is near, if one is known. `ball`: around the block.
+    // `guess`: a nearby face, if one is known. `ball`: around the block.
     void fill(ivec3 low, int size, Index guess, const Ball& ball) {
         const ivec3 high = glm::min(low + size, volume_.dims);
         const Tree::Nearest nearest = tree_.nearest(vec3(ball.centre), 2 * float(ball.radius) + band, guess);
@@ -93,19 +93,19 @@ class Depths {
                 for (int x = low.x; x < high.x; ++x) at({x, y, z}) = value;
     }
 
-    // 1 or -1 if a whole ball is inside or outside, 0 if that cannot be told. Away from the surface the
-    // winding number is harmonic. So if it lies between 0 and 1, Harnack's inequality bounds how much nearer
-    // to a half it may be anywhere in the ball than in the middle. `ratio`: of the ball's radius to that of
-    // one free of surface.
+    // 1 or -1 if a whole ball is inside or outside, 0 if unknown. Away from the surface the winding number is
+    // a harmonic function. So if it is between 0 and 1, Harnack's inequality bounds how much nearer to a half
+    // it can be anywhere in the ball than at the centre. `ratio`: of the ball's radius to that of a
+    // concentric ball without surface.
     static float decided(double winding, double ratio) {
         const double off = std::max(0.0, std::min(winding, 1 - winding));
         if (off * (1 + ratio) >= 0.5 * (1 - ratio) * (1 - ratio)) return 0;
         return winding > 0.5 ? 1.0f : -1.0f;
     }
 
-    // The same for a block clear of the surface whose corners are all well on one side: within it a harmonic
-    // function is nowhere more extreme than on its border, and changes little over the distance to the
-    // surface.
+    // The same for a block away from the surface whose corners are all well on one side, by the maximum
+    // principle: a harmonic function takes its extremes on the border, and it changes little over the
+    // distance to the surface.
     float agreed(ivec3 low, ivec3 high, const Ball& ball) const {
         constexpr double well = 0.02;
         int inside = 0, outside = 0;
@@ -120,8 +120,8 @@ class Depths {
 
     static float off_voxel(float depth) { return std::max(depth, 1e-3f); }
 
-    // Across a hole, where there is no surface, the winding number falls smoothly past one half: a depth is
-    // made of it that is less than the distance from the surface only there.
+    // Across a hole, where there is no surface, the winding number falls smoothly through one half: it is
+    // converted to a depth that is smaller than the distance from the surface only there.
     float across(dvec3 p, const Ball& ball) const {
         const float depth = hole_slope * float(winding_.at(p, ball) - 0.5);
         return std::copysign(off_voxel(std::abs(depth)), depth);
@@ -133,7 +133,7 @@ class Depths {
     std::vector<std::vector<Index>> border_{std::size_t(volume_.dims.z)};  // by layer
 };
 
-// Half a voxel keeps a box's walls off the voxels themselves.
+// An offset by half a voxel keeps axis-aligned walls off the voxel centres.
 Volume empty_grid(dvec3 size, const std::string& name) {
     const dvec3 voxels = glm::ceil(size) + double(2 * margin + 1);
     if (!(voxels.x * voxels.y * voxels.z <= most_voxels))
@@ -147,7 +147,7 @@ Volume empty_grid(dvec3 size, const std::string& name) {
     return volume;
 }
 
-// The faces of the parts that turn inward.
+// The faces of the parts that face inwards.
 std::vector<Index> inward_faces(const Mesh& mesh, const Parts& part) {
     const std::vector<double> volume = volumes(mesh, part);
     std::vector<Index> faces;
@@ -156,13 +156,13 @@ std::vector<Index> inward_faces(const Mesh& mesh, const Parts& part) {
     return faces;
 }
 
-// Tells the cavities of a mesh from hollows that are only left between its parts. Its unit is the voxel.
+// Distinguishes the cavities of a mesh from mere gaps between its parts. Its unit is the voxel.
 class Walls {
  public:
     explicit Walls(const Mesh& mesh)
         : part_(parts(mesh)), all_(mesh), inward_(mesh, inward_faces(mesh, part_)), winding_(inward_) {}
 
-    // `hollow`: the faces of what voxels made that turn into it.
+    // `hollow`: the faces of the voxel remesh that bound it.
     bool bound(const Mesh& solid, const std::vector<Index>& hollow, double volume) const {
         double around = 0, area = 0;
         std::vector<double> area_by(part_.count);
@@ -179,13 +179,13 @@ class Walls {
         }
         if (around < -0.5) return true;
         const double whole = area * double(hollow.size()) / double(looks);
-        const bool wide = 3 * volume > least_radius * whole;  // as of a ball
+        const bool wide = 3 * volume > least_radius * whole;  // as for a ball
         return wide && *std::max_element(area_by.begin(), area_by.end()) > 0.75 * area;
     }
 
  private:
     static constexpr std::size_t most_looks = 200;
-    static constexpr float farthest = 4;       // voxels, of a wall from what was made of it
+    static constexpr float farthest = 4;       // voxels, from a wall to the surface made of it
     static constexpr double least_radius = 2;  // voxels
 
     Parts part_;
@@ -208,7 +208,7 @@ Dropped fill_hollows(Mesh& solid, const Mesh& mesh) {
     return keep_parts(solid, part, keep);
 }
 
-// Drops small parts of matter, but never the largest.
+// Drops small outer parts, but never the largest.
 Dropped drop_bits(Mesh& solid) {
     constexpr double least = 64;  // voxels
     const Parts part = parts(solid);
@@ -227,7 +227,7 @@ bool is_kept(const Volume& depths, dvec3 point) {
     return false;
 }
 
-// Finds the faces of `mesh` beside which no voxel is inside: looks about a voxel apart on each.
+// Finds the faces of `mesh` with no inner voxel next to them, by samples about a voxel apart.
 void find_thin(const Mesh& mesh, const Volume& depths, Remade& made) {
     constexpr int most_looks = 64;  // along a side
     double area = 0, lost = 0;
@@ -280,7 +280,7 @@ Remade remake(const Mesh& mesh, float voxel, const std::string& name, const Prog
     parallel_for(layers, 1, [&](std::size_t i) { filler.find_border(int(i) + 1); });
     parallel_for(layers, 1, [&](std::size_t i) { filler.measure_border(int(i) + 1); });
 
-    // A sheet has points inside by rounding at most.
+    // A sheet has inner points only by rounding.
     if (!(*std::max_element(depths.values.begin(), depths.values.end()) > 0.25f)) throw nothing;
     Remade made{isosurface(depths, 0)};
     made.hollows = fill_hollows(made.solid, small);

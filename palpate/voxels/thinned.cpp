@@ -7,7 +7,8 @@ namespace palpate {
 std::vector<uvec3> simplified(const Mesh& mesh, std::size_t triangles) {
     const std::size_t before = mesh.triangles.size();
     if (before <= triangles) return mesh.triangles;
-    // The number decides, so any error is allowed: 1 is as much as the whole mesh is wide.
+    // The number of triangles is the only criterion, so any error is allowed: 1 is the width of the whole
+    // mesh.
     std::vector<uvec3> kept(before);
     const std::size_t corners =
         meshopt_simplify(&kept[0].x, &mesh.triangles[0].x, 3 * before, &mesh.positions[0].x,

@@ -6,12 +6,11 @@
 
 namespace palpate {
 
-/// About so many triangles that have a mesh's shape, or as many as it has if those are fewer. They are
-/// between vertices of the mesh, so that they move along with it.
+/// A simplified level of detail: about this many triangles, or all if there are fewer. They use the mesh's
+/// vertices, so they move along with it.
 std::vector<uvec3> simplified(const Mesh& mesh, std::size_t triangles);
 
-/// The same in an order in which neighbours follow each other, so that a vertex that several of them share is
-/// shaded once.
+/// The same, ordered for the GPU's vertex cache, so that shared vertices are shaded once.
 std::vector<uvec3> thinned(const Mesh& mesh, std::size_t triangles);
 
 }  // namespace palpate

@@ -298,7 +298,7 @@ TEST(CloseHoles, ClosesWhatRandomlyDroppedFacesLeave) {
         std::erase_if(mesh.triangles, [&](uvec3) { return random() % 12 == 0; });
         const std::size_t holes = close_holes(mesh);
         EXPECT_GE(holes, 20u);
-        part_sheets(mesh);
+        separate_sheets(mesh);
         drop_unused(mesh);
         expect_closed(mesh);
         EXPECT_LE(std::abs(volume(mesh) / before - 1), 0.01);
@@ -322,7 +322,7 @@ TEST(PartSheets, TwoCubesThatShareAnEdge) {
     Mesh mesh = both(box(vec3(0), vec3(1)), box(vec3(1, 1, 0), vec3(2, 2, 1)));
     EXPECT_EQ(weld(mesh), 2u);
     EXPECT_EQ(soundness(mesh).crowded_edges, 1u);
-    EXPECT_EQ(part_sheets(mesh), 2u);
+    EXPECT_EQ(separate_sheets(mesh), 2u);
     expect_closed(mesh);
     EXPECT_EQ(soundness(mesh).parts, 2u) << "matter is on the far sides of the edge";
     EXPECT_EQ(soundness(mesh).shared_vertices, 0u);
@@ -338,7 +338,7 @@ TEST(PartSheets, AnEdgeWithAThousandSheets) {
         mesh.triangles.push_back(i % 2 ? uvec3(0, 1, here) : uvec3(1, 0, here));
         if (i % 2) mesh.triangles.insert(mesh.triangles.end(), {{0, here, here - 1}, {1, here - 1, here}});
     }
-    EXPECT_EQ(part_sheets(mesh), 2 * 999u);
+    EXPECT_EQ(separate_sheets(mesh), 2 * 999u);
     expect_closed(mesh);
     EXPECT_EQ(soundness(mesh).parts, 1000u);
     for (uvec3 t : mesh.triangles) ASSERT_LT(std::max({t.x, t.y, t.z}), mesh.positions.size());
