@@ -11,7 +11,7 @@ constexpr std::string_view base64_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghij
 
 static_assert(std::endian::native == std::endian::little, "files are written as numbers lie in memory");
 
-/// The bytes of a plain value, lowest first, at the end of a file's text.
+/// Appends the bytes of a plain value, little-endian, to a file's contents.
 template <class T>
 void append(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);

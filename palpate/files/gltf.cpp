@@ -12,12 +12,12 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// glTF's numbers for kinds of things.
+// Constants of glTF.
 constexpr int float_numbers = 5126, index_numbers = 5125, vertex_buffer = 34962, index_buffer = 34963;
 
 OrderedJson array(vec3 v) { return {v.x, v.y, v.z}; }
 
-// The lists of a file, and what each new entry of theirs is called by: its number.
+// The lists of a file. Each function appends an entry and returns its index.
 struct Lists {
     OrderedJson views = OrderedJson::array(), accessors = OrderedJson::array();
     std::uint64_t end = 0;  // of the views so far, bytes
@@ -49,7 +49,7 @@ struct Lists {
     }
 };
 
-// Positions, and normals behind them, at an offset of a view.
+// Positions, followed by normals, at an offset of a view.
 OrderedJson attributes(const GltfContents& contents, Lists& lists, int view, std::uint64_t offset,
                        const Bounds& box) {
     OrderedJson json;

@@ -26,19 +26,19 @@ namespace {
 
 constexpr double most_pixels = 1 << 26;
 constexpr std::size_t most_written = 4 * std::size_t(most_pixels) + 2 * sizeof(int);
-constexpr double most_pixels_a_byte = 8 * 1032;  // of one bit each, packed as well as a PNG can
+constexpr double most_pixels_a_byte = 8 * 1032;  // of one bit each, with the best compression of a PNG
 
 std::uint8_t byte(std::string_view bytes, std::size_t at) { return std::uint8_t(bytes[at]); }
 
-// Of `count` bytes, the highest first.
+// A big-endian number of `count` bytes.
 std::uint32_t number(std::string_view bytes, std::size_t at, std::size_t count) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < count; ++i) value = value << 8 | byte(bytes, at + i);
     return value;
 }
 
-// Whether its chunks, each of the length and with the checksum that it says, follow each other to the last.
-// The decoder does not look.
+// Whether its chunks, with their stated lengths and checksums, are complete to the last one. The decoder does
+// not check this.
 bool is_whole_png(std::string_view bytes) {
     bytes.remove_prefix(8);
     while (bytes.size() >= 12) {
@@ -53,8 +53,8 @@ bool is_whole_png(std::string_view bytes) {
     return false;
 }
 
-// Whether its segments follow each other to the mark of its end; the decoder would fill in what is missing.
-// Between them lie a scan's data, in which FF stands only before 00 or the mark of a restart.
+// Whether its segments are complete to the end marker; the decoder would fill in what is missing. Between
+// them lies the data of scans, in which FF only precedes 00 or a restart marker.
 bool is_whole_jpeg(std::string_view bytes) {
     for (std::size_t at = 2; at + 2 <= bytes.size();) {
         const std::uint32_t mark = byte(bytes, at) == 0xff ? byte(bytes, at + 1) : 0;
@@ -71,7 +71,7 @@ bool is_whole_jpeg(std::string_view bytes) {
 Image read_image(const std::filesystem::path& path) { return parse_image(read_text(path), path.string()); }
 
 Image parse_image(std::string_view bytes, const std::string& name) {
-    auto refuse = [&](const std::string& what) { throw Error(what, name, "save it anew as a PNG"); };
+    auto refuse = [&](const std::string& what) { throw Error(what, name, "save it again as a PNG"); };
     const bool png = bytes.starts_with("\x89PNG\r\n\x1a\n"), jpeg = bytes.starts_with("\xff\xd8\xff");
     if (!png && !jpeg) refuse("neither a PNG nor a JPEG");
     const std::string damaged = fmt::format("a truncated or damaged {}", png ? "PNG" : "JPEG");
@@ -109,9 +109,9 @@ Image parse_image(std::string_view bytes, const std::string& name) {
 void write_png(const Image& image, const std::filesystem::path& path) {
     if (image.width < 1 || image.height < 1 ||
         image.pixels.size() != 4 * std::size_t(image.width) * std::size_t(image.height))
-        throw Error("a picture of another number of pixels than its size says", path.string(),
-                    "give it four bytes a pixel");
-    // A short write is noticed by write_file, which asks the file.
+        throw Error("an image whose number of pixels differs from its width times height", path.string(),
+                    "give it four bytes for each pixel");
+    // write_file notices a short write.
     auto append = [](void* file, void* bytes, int count) {
         std::fwrite(bytes, 1, static_cast<std::size_t>(count), static_cast<std::FILE*>(file));
     };

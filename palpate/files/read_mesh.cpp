@@ -28,10 +28,10 @@ constexpr Format own_formats[] = {{".ply", read_ply},  {".obj", read_obj},   {".
                                   {".x3dz", read_x3d}, {".x3db", read_x3d},  {".x3dv", read_vrml},
                                   {".wrl", read_vrml}, {".wrz", read_vrml},  {".vrml", read_vrml}};
 
-// How volumes begin, whatever their names say.
+// The first bytes of volumes (magic numbers), whatever their names.
 struct VolumeSign {
     std::string_view start, what, remedy;
-    std::size_t at = 0;  // where it stands
+    std::size_t at = 0;  // its offset
 };
 
 constexpr VolumeSign volume_signs[] = {{"NRRD000", "an NRRD volume", "name it .nrrd"},
@@ -48,12 +48,12 @@ const Format* own_format(std::string_view ending) {
     return found == std::end(own_formats) ? nullptr : found;
 }
 
-// First bytes that leave no doubt, whatever the name ends with.
+// First bytes (magic numbers) that identify a format, whatever the extension.
 constexpr std::pair<std::string_view, std::string_view> signs[] = {
     {"glTF", ".glb"},    {"ply\n", ".ply"}, {"ply\r", ".ply"}, {"#VRML V", ".wrl"},
     {"#X3D V", ".x3dv"}, {"OFF\n", ".off"}, {"OFF\r", ".off"}};
 
-// The same of a beginning that others may have, too: by a word that stands soon behind it.
+// The same for ambiguous first bytes, with a word that follows soon after them.
 struct Sign {
     std::string_view start, soon, ending;
 };
@@ -62,7 +62,7 @@ constexpr Sign longer_signs[] = {{"solid", "facet normal", ".stl"},
                                  {"PK\3\4", "[Content_Types].xml", ".3mf"},
                                  {"{", "\"asset\"", ".gltf"}};
 
-// The ending that a file should have by its first bytes; nothing where they may be of any format.
+// The extension that fits a file's first bytes; empty if they may be of any format.
 std::string_view ending_by(std::string_view bytes) {
     for (const auto& [start, ending] : signs)
         if (bytes.starts_with(start)) return ending;
@@ -91,20 +91,20 @@ Draft read_draft(const Source& source, const std::string& format) {
     if (!meant || (named && named->read == meant->read))
         return named ? named->read(source) : read_with_assimp(source);
     Draft draft = meant->read(source);
-    draft.notes.push_back(fmt::format("read as {}, which it is by its first bytes", ending));
+    draft.notes.push_back(fmt::format("read as {}, because its first bytes say so", ending));
     return draft;
 }
 
 bool is_known(const std::string& format) { return own_format(format) || assimp_knows(format); }
 
-// A file's ending, without the .gz that may stand behind it.
+// A file's extension, ignoring a final .gz.
 std::string format_of(const std::filesystem::path& path) {
     return ending(ending(path) == ".gz" ? path.stem() : path);
 }
 
 void check_format(const std::string& format, const std::string& name) {
     if (is_known(format)) return;
-    throw Error(format.empty() ? "no ending that tells the format"
+    throw Error(format.empty() ? "no extension that tells the format"
                                : "cannot read the mesh format " + in_quotes(format),
                 name,
                 "use .ply, .obj, .stl, .off, .gltf, .glb, .3mf, .x3d or .wrl for a mesh, and .nii, .nrrd, "
@@ -115,7 +115,7 @@ void check_format(const std::string& format, const std::string& name) {
     throw Error("more than the memory can hold", name, "free some, or use a smaller mesh");
 }
 
-// The whole of a gzip. It grows as it comes, and not beyond what a mesh that is packed well may need.
+// Decompresses a whole gzip, up to the size of a very well compressed mesh.
 std::string read_unzipped(const std::filesystem::path& path) {
     struct Close {
         void operator()(gzFile file) const { gzclose(file); }

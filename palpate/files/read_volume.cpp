@@ -43,17 +43,16 @@ ivec3 checked_sizes(const std::vector<double>& sizes, const std::filesystem::pat
 
 void refuse_truncated(double there, double promised, std::string_view what,
                       const std::filesystem::path& path) {
-    refuse(
-        fmt::format("{:.0f} {} of voxels where {:.0f} are promised (it is truncated)", there, what, promised),
-        path, "get the file again");
+    refuse(fmt::format("only {:.0f} {} of voxels instead of {:.0f} (it is truncated)", there, what, promised),
+           path, "get the file again");
 }
 
 namespace {
 
-// False for what no scanner writes.
+// False for numbers that no scanner writes.
 bool sensible(double number) { return std::abs(number) < 1e9; }
 
-// What keeps steps and an origin from being a grid, or nothing.
+// Why steps and an origin are not a valid grid; empty if they are.
 std::string trouble(const dmat3& steps, dvec3 origin) {
     for (int i = 0; i < 3; ++i) {
         const double width = glm::length(steps[i]);
@@ -87,7 +86,7 @@ Grid checked_grid(ivec3 dims, const dmat3& steps, dvec3 origin, const std::files
 double named_unit(const std::string& name, std::vector<std::string>& notes) {
     if (const auto metres = metres_of(name)) return *metres;
     if (!name.empty() && name != "?" && name != "???" && name != "none" && name != "unknown")
-        notes.push_back("its unit of length, \"" + name + "\", is not known: millimetres are assumed");
+        notes.push_back("its unit of length, \"" + name + "\", is unknown: millimetres are assumed");
     return 0;
 }
 
@@ -102,7 +101,7 @@ constexpr Format formats[] = {
     {".nhdr", read_nrrd}, {".mha", read_metaimage}, {".mhd", read_metaimage},
 };
 
-// By the name's ending, with .gz behind or not.
+// By the file name's extension, ignoring a final .gz.
 const Format* format_of(const std::filesystem::path& path) {
     std::string name = lower_name(path);
     if (name.ends_with(".gz")) name.resize(name.size() - 3);
@@ -128,7 +127,7 @@ Reading read_anywhere(const std::filesystem::path& path) {
            "use .nii, .hdr and .img, .nrrd, .nhdr, .mha, .mhd or a folder with a DICOM series");
 }
 
-// What bears no value lies outside: it gets the lowest, but 0 where all are above.
+// Voxels without a value count as outside: they get the lowest value, at most 0.
 void fill_outside(Reading& reading, const std::filesystem::path& path) {
     float lowest = 0;
     std::size_t without = 0;
@@ -143,7 +142,7 @@ void fill_outside(Reading& reading, const std::filesystem::path& path) {
     for (float& value : reading.values)
         if (!std::isfinite(value)) value = lowest;
     reading.notes.push_back(fmt::format(
-        "{} voxels ({:.2g} %) bear no value (NaN, infinite, or marked as outside): {} is taken for them",
+        "{} voxels ({:.2g} %) have no value (NaN, infinite, or marked as outside): {} is taken for them",
         without, 100.0 * double(without) / double(reading.values.size()), lowest));
 }
 

@@ -61,12 +61,12 @@ class Numbered : public Sequence {
     Mesh mesh_;
     std::filesystem::path path_;
     std::size_t digits_, count_ = 0;
-    std::string list_;  // of the files and their times
+    std::string list_;  // the files and their times
 };
 
 // ---- one file ----
 
-// A file whose head is known last, because it tells of all that follows: that waits on disk until then.
+// A file whose header is known only at the end: its body waits on disk until then.
 class Headless {
  public:
     explicit Headless(const std::filesystem::path& path)
@@ -105,7 +105,7 @@ class Headless {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
     std::filesystem::path path_;
-    Unfinished waiting_;  // never finished: it is gone in the end
+    Unfinished waiting_;  // never finished, so it is removed in the end
     std::unique_ptr<std::FILE, Close> stream_;
 };
 
@@ -138,7 +138,7 @@ class Cache : public Sequence {
  private:
     bool is_mdd() const { return ending(path_) == ".mdd"; }
 
-    // Lightwave's: all numbers big-endian, and the times before the positions.
+    // The format of LightWave: all numbers are big-endian, and the times come before the positions.
     std::string mdd_head() const {
         std::string head;
         append(head, big_endian(times_.size()));
@@ -147,7 +147,7 @@ class Cache : public Sequence {
         return head;
     }
 
-    // PointCache2: no times, but a first frame and how many frames a sample lasts.
+    // PointCache2: no times, but a first frame and the number of frames per sample.
     std::string pc2_head() const {
         std::string head("POINTCACHE2\0", 12);
         append(head, std::int32_t{1});  // its version
@@ -214,7 +214,7 @@ class Morphs : public Sequence {
     Headless file_;
 };
 
-// Any of them, with pictures that fit it.
+// Checks the pictures for any of the formats.
 class Checked : public Sequence {
  public:
     Checked(const Mesh& mesh, bool keeps_normals, const std::filesystem::path& path,
@@ -227,11 +227,12 @@ class Checked : public Sequence {
     void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) override {
         const bool lacks_normals = normals.empty() ? wants_normals_ : normals.size() != vertices_;
         if (positions.size() != vertices_ || lacks_normals)
-            throw Error("a picture of another number of vertices than the sequence's", path_.string(),
+            throw Error("a picture whose number of vertices differs from that of the sequence",
+                        path_.string(),
                         "give every vertex of the mesh a position, and a normal if the mesh has them");
         if (!(std::isfinite(time) && time > last_))
             throw Error(fmt::format("a picture at {} s after one at {} s", time, last_), path_.string(),
-                        "add them in their order");
+                        "add them in order");
         last_ = time;
         sequence_->add(time, positions, normals);
     }

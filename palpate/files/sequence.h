@@ -8,27 +8,28 @@
 
 namespace palpate {
 
-/// A surface that moves, written picture by picture. Each goes to disk at once, so memory does not grow with
-/// their number. A file of many pictures gets its name in finish(), and without that nothing of it is left;
+/// An animated surface, written picture by picture. Each picture goes to disk at once, so memory does not
+/// grow with their number. A single file gets its final name in finish(), and is removed without that;
 /// numbered files get theirs one by one.
 class Sequence {
  public:
     virtual ~Sequence() = default;
 
-    /// The next picture: where the mesh's vertices are at `time` (s, later than the last one's), and their
-    /// normals, if the mesh has any; a cache of positions alone (.pc2, .mdd) needs none. Throws Error if they
-    /// are another number or not later, if the disk is full, or if more than `pictures` are too many.
+    /// Adds a picture: the positions of the mesh's vertices at `time` (s, later than the last one's), and
+    /// their normals if the mesh has any; a cache of positions (.pc2, .mdd) needs none. Throws Error if their
+    /// number is wrong, if the time is not later, if the disk is full, or if there are more than `pictures`
+    /// where that matters.
     virtual void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) = 0;
 
-    /// After the last picture; there must be one. Throws Error.
+    /// Must be called after the last picture, of which there must be at least one. Throws Error.
     virtual void finish() = 0;
 };
 
-/// Throws Error if make_sequence knows no format for a file of this name.
+/// Throws Error if make_sequence has no format for this file name.
 void check_sequence_name(const std::filesystem::path& path);
 
-/// Begins a sequence of the mesh, which is given as it is at rest, in metres and seconds, in the format of
-/// the name's ending. For OUT with up to `pictures` pictures (which only numbers and limits depend on):
+/// Begins a sequence of the mesh, which is given at rest, in metres and seconds, in the format of the file
+/// name's extension. For OUT with up to `pictures` pictures (which affects only numbering and limits):
 /// - `.ply`, `.obj`, `.stl`: OUT-0001.ply and so on; older files with higher numbers stay;
 /// - `.vtp`: OUT-0001.vtp and so on, and OUT.pvd, which lists them with their times;
 /// - `.pc2`, `.mdd`: a cache of positions alone, evenly timed, and OUT.obj, the mesh at rest with its
@@ -37,7 +38,7 @@ void check_sequence_name(const std::filesystem::path& path);
 /// - `.glb`: glTF with a morph target a picture, which an animation blends; 24 bytes a vertex and picture (12
 ///   without normals), and 4 for each pair of pictures.
 ///
-/// Throws Error if it is no such name, or if all pictures would not fit into a .glb of 2 GB.
+/// Throws Error for any other extension, or if the pictures would not fit into a .glb of 2 GB.
 std::unique_ptr<Sequence> make_sequence(const Mesh& mesh, const std::filesystem::path& path,
                                         std::size_t pictures);
 

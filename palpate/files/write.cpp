@@ -40,7 +40,7 @@ std::string ply(const Mesh& mesh, const std::string&) {
 std::string obj(const Mesh& mesh, const std::string&) {
     std::string text = "# in metres, written by Palpate\n";
     auto out = std::back_inserter(text);
-    // Nine digits tell every float from its neighbours.
+    // Nine digits distinguish every float from its neighbours.
     for (vec3 p : mesh.positions) fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
     for (vec3 n : mesh.normals) fmt::format_to(out, "vn {:.9g} {:.9g} {:.9g}\n", n.x, n.y, n.z);
     for (uvec3 t : mesh.triangles) {
@@ -53,7 +53,7 @@ std::string obj(const Mesh& mesh, const std::string&) {
     return text;
 }
 
-// Counter-clockwise; zero where the face has no area. In double no product of floats is lost.
+// The face normal; zero if the face is degenerate. In double, so that no product of floats underflows.
 vec3 face_normal(dvec3 a, dvec3 b, dvec3 c) {
     const dvec3 across = glm::cross(b - a, c - a);
     const double length = glm::length(across);
@@ -73,7 +73,7 @@ std::string stl(const Mesh& mesh, const std::string&) {
     return bytes;
 }
 
-// Each block of numbers has its length before it, and the text says where it begins.
+// Each block of numbers follows its length, and the XML has its offset.
 std::string vtp(const Mesh& mesh, const std::string& file) {
     if (mesh.triangles.size() > std::numeric_limits<std::int32_t>::max() / 3)
         throw Error("too many triangles for VTK's 32-bit numbers", file, "use .ply, or simplify it");

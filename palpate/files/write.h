@@ -5,18 +5,18 @@
 
 namespace palpate {
 
-/// Throws Error if write_mesh knows no format for a file of this name.
+/// Throws Error if write_mesh has no format for this file name.
 void check_mesh_name(const std::filesystem::path& path);
 
-/// Writes a surface in metres, with normals where it has them, in the format of the name's ending:
+/// Writes a surface in metres, with its normals if it has any, in the format of the file name's extension:
 /// - `.ply`: binary, little-endian; reading it again gives the same floats and indices;
 /// - `.obj`: text; what it keeps, read.h says;
-/// - `.stl`: binary; each face with corners of its own and its own normal, 0 where it has no area;
+/// - `.stl`: binary; each face with its own corners and its own normal, 0 if it is degenerate;
 /// - `.vtp`: VTK's XML PolyData, its numbers appended as raw bytes;
 /// - `.glb`, `.gltf`: glTF 2.0, in one file; normals are made unit.
 ///
-/// Whole or not at all. Throws Error if the file cannot be written, or its format cannot hold the mesh: glTF
-/// wants triangles, and at most 2 GB.
+/// The file is written whole or not at all. Throws Error if it cannot be written, or if its format cannot
+/// hold the mesh: glTF needs at least one triangle, and at most 2 GB.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 }  // namespace palpate

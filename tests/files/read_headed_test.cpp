@@ -255,7 +255,7 @@ TEST_F(ReadNoted, BelievesTheUnitThatAFileNames) {
         EXPECT_LE(glm::distance(plain.spacing / metres, vec3(2, 3, 4)), 1e-5f) << name;
     }
     read_nrrd(space + "space units: \"furlong\" \"furlong\" \"furlong\"\n");
-    EXPECT_HAS(notes, "\"furlong\", is not known: millimetres are assumed");
+    EXPECT_HAS(notes, "\"furlong\", is unknown: millimetres are assumed");
     EXPECT_HAS(
         volume_error(scratch / "a.nrrd", nrrd("uchar", "raw", space + "space units: \"mm\" \"cm\" \"mm\"\n") +
                                              bytes_of<std::uint8_t>(count_up())),
@@ -326,7 +326,7 @@ TEST_F(ReadNoted, UnpacksWhateverAnNrrdIsPackedIn) {
     EXPECT_HAS(error("gzip", raw), "said to be a gzip and are none");
     EXPECT_HAS(error("hex", "0g"), "hexadecimal");
     EXPECT_HAS(error("text", "1 2 three"), "\"three\" for a number");
-    EXPECT_HAS(error("text", "1 2 3"), "3 numbers of voxels where 24 are promised");
+    EXPECT_HAS(error("text", "1 2 3"), "3 numbers of voxels instead of 24");
     EXPECT_HAS(error("zrl", raw), "the encoding \"zrl\", which is not read");
     std::string damaged = gzip(raw);
     damaged[damaged.size() - 6] = char(damaged[damaged.size() - 6] ^ 1);  // the checksum

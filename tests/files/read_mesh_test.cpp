@@ -358,7 +358,7 @@ TEST(ReadMesh, WhatAFileIsStandsInItsBytes) {
     for (const char* name : {"a.stl", "a.fbx"})
         EXPECT_TRUE(same_bytes(parse_mesh(bytes, name, {}, &notes).positions, mesh.positions));
     ASSERT_EQ(notes.size(), 2u);
-    EXPECT_HAS(notes[0], "read as .ply, which it is by its first bytes");
+    EXPECT_HAS(notes[0], "read as .ply, because its first bytes say so");
     const std::pair<const char*, const char*> strangers[] = {
         {"<!DOCTYPE html><html>", "a web page"},
         {"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"},
@@ -376,7 +376,7 @@ TEST(ReadMesh, WhatIsWrongIsNamedFirst) {
     };
     EXPECT_HAS(error(scratch / "gone"), "cannot find the file");
     EXPECT_HAS(error(scratch / "gone.stl"), "cannot find the file");
-    EXPECT_HAS(mesh_error(scratch / "plain", "x"), "no ending that tells the format");
+    EXPECT_HAS(mesh_error(scratch / "plain", "x"), "no extension that tells the format");
     EXPECT_HAS(mesh_error(scratch / "a.vti", "x"), ".nii, .nrrd");
     for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off", "a.glb", "a.3mf", "a.x3d", "a.wrl", "a.fbx"})
         EXPECT_HAS(parse_error(name, ""), "an empty file") << name;

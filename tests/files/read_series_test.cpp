@@ -446,7 +446,7 @@ TEST_F(ReadSeries, LooksValuesUpInATable) {
     EXPECT_EQ(volume.values[area + 2], 5);
     EXPECT_EQ(volume.values[area + 3], 9);
     with(table({4, 101, 16}, {7, 900}));
-    EXPECT_HAS(error(folder), "a table of values (ModalityLUTSequence) that is not whole");
+    EXPECT_HAS(error(folder), "an incomplete table of values (ModalityLUTSequence)");
 }
 
 TEST_F(ReadSeries, SaysThatItReadsNoFloatPixels) {

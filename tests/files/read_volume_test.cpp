@@ -211,7 +211,7 @@ TEST(ReadVolume, TakesTheLowestWhereNoValueIs) {
             put(path, small().matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}).values(16, numbers).bytes());
             std::vector<std::string> notes;
             EXPECT_EQ(read_volume(path, Units::metres, &notes).values, expected);
-            EXPECT_HAS(notes.at(0), "1 voxels (4.2 %) bear no value");
+            EXPECT_HAS(notes.at(0), "1 voxels (4.2 %) have no value");
         }
     }
     EXPECT_HAS(volume_error(path, small().values(16, std::vector<float>(24, NAN)).bytes()),

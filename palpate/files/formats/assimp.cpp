@@ -1,5 +1,5 @@
-// assimp knows some fifty formats, and believes what a file of them claims: it may allocate what a list
-// promises, run without end, or crash. So it works in a process of its own, and what it returns is checked
+// assimp reads some fifty formats, but trusts what a file claims: it may allocate as much as a list
+// announces, run without end, or crash. So it runs in a process of its own, and what it returns is checked
 // like any draft.
 #include "palpate/base/error.h"
 #include "palpate/base/isolated.h"
@@ -27,7 +27,7 @@
 namespace palpate {
 namespace {
 
-// All that assimp can open: the file, and files in the same folder or below it.
+// The files that assimp can open: this one, and files in the same folder or below.
 class Beside : public Assimp::DefaultIOSystem {
  public:
     Beside(const Source& source, std::string_view bytes, std::string name)
@@ -62,8 +62,8 @@ Place world_of(const aiNode& node) {
     return place;
 }
 
-// Where the bones of a mesh carry each of its vertices, by weight; a vertex on none stays with the node.
-// Empty if the mesh has no bones, or one that is no node.
+// Skinning: the weighted transform of each vertex by its bones; a vertex without bones stays with the node.
+// Empty if the mesh has no bones, or one that is not a node.
 std::vector<Place> carried(const aiScene& scene, const aiMesh& mesh, const Place& node) {
     if (!mesh.HasBones()) return {};
     MeanPlaces places(mesh.mNumVertices);
@@ -77,7 +77,7 @@ std::vector<Place> carried(const aiScene& scene, const aiMesh& mesh, const Place
     return std::move(places).take(node);
 }
 
-// A mesh may hang on several nodes, each of which places it.
+// A mesh may be instanced by several nodes.
 void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Draft& draft) {
     const aiMatrix4x4 m = above * node.mTransformation;
     const Place node_place = place_of(m);
@@ -108,13 +108,12 @@ void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Dra
         }
     }
     for (const aiNode* child : std::span(node.mChildren, node.mNumChildren))
-        if (child) add(scene, *child, m, draft);  // some readers leave holes
+        if (child) add(scene, *child, m, draft);  // some of assimp's readers leave null pointers
 }
 
-// ---- what assimp takes at its word ----
+// ---- corrections before assimp reads ----
 
-// Collada with axes of rotations made unit: assimp would shear what they turn. <rotate ...>x y z
-// angle</rotate>
+// Collada with rotation axes made unit, since assimp would shear otherwise. <rotate ...>x y z angle</rotate>
 std::string with_unit_axes(std::string_view text) {
     std::string mended;
     for (std::size_t at; (at = text.find("<rotate")) != std::string_view::npos;) {
@@ -138,7 +137,7 @@ std::string with_unit_axes(std::string_view text) {
 
 // ---- units ----
 
-// What an attribute of the first such element of an XML file says.
+// An attribute of the first such element of an XML file.
 std::optional<std::string> in_xml(const Source& source, std::string_view element,
                                   std::string_view attribute) {
     std::optional<std::string> found;
@@ -161,8 +160,7 @@ double dxf_unit(std::string_view text) {
     return is_whole(code, 0, double(std::size(metres)) - 1) ? metres[std::size_t(code)] : 0;
 }
 
-// The unit that the file states, in metres; 0 where it does not. Of the formats that can, Collada's is the
-// one that assimp heeds itself.
+// The unit that the file states, in metres; 0 if it states none. assimp itself applies only that of Collada.
 double stated_unit(const Source& source, const std::string& format, const aiScene& scene) {
     float centimetres = 0;
     if (format == ".fbx" && scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", centimetres))
@@ -191,7 +189,7 @@ void tell_of_skins_and_targets(const aiScene& scene, std::vector<std::string>& n
     };
     if (const auto skins = std::ranges::count_if(meshes, astray))
         notes.push_back(
-            fmt::format("left out the skins of {} meshes, of whose bones some are no nodes", skins));
+            fmt::format("left out the skins of {} meshes, because some of their bones are not nodes", skins));
     const auto has_targets = [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; };
     if (const auto targets = std::ranges::count_if(meshes, has_targets))
         notes.push_back(fmt::format("left out the morph targets of {} meshes", targets));

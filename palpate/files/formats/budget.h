@@ -5,19 +5,19 @@
 
 namespace palpate {
 
-/// How many bytes may be made of a file of `size` bytes, by unpacking and by parts that are repeated. A small
-/// file could fill the memory otherwise.
+/// How many bytes a file of `size` bytes may expand to, by decompression and by repeated parts. Otherwise a
+/// small file could fill the memory (a decompression bomb).
 constexpr std::size_t warranted(std::size_t size) { return (std::size_t(256) << 20) + 64 * size; }
 
-/// What is left of that. Whatever is made of a file is spent here, before it is made; what costs time alone
-/// is spent as if it were bytes.
+/// The remaining budget. Every allocation is charged here before it is made; work that costs only time is
+/// charged as if it were bytes.
 class Budget {
  public:
     explicit Budget(const Source& source) : source_(source), left_(warranted(source.whole().size())) {}
 
     std::size_t left() const { return left_; }
 
-    /// Throws Error if there is less left.
+    /// Throws Error if too little is left.
     void spend(std::size_t count, std::size_t bytes_each = 1) {
         if (count > left_ / bytes_each)
             source_.broken("more than the file's size warrants, by parts that are repeated",
@@ -25,7 +25,7 @@ class Budget {
         left_ -= count * bytes_each;
     }
 
-    /// For another file, of `size` bytes, that belongs to the one being read.
+    /// Adds the budget of another file, of `size` bytes, that belongs to the one being read.
     void add_file(std::size_t size) { left_ += warranted(size) - warranted(0); }
 
  private:

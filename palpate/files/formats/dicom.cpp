@@ -20,17 +20,16 @@ namespace {
 
 using Group = std::vector<Slice>;
 
-// How far slices may lie from even places: so far without a word, and so far with a note. In distances of two
-// slices.
+// How unevenly slices may be spaced: silently, and with a note. In slice distances.
 constexpr double even = 0.01, bearable = 0.1;
-// Of directions, and of spacings relative to each other.
+// The tolerance of directions, and of relative spacings.
 constexpr double alike = 1e-3;
 constexpr int most_files_in_a_folder = 100'000, deepest = 8;
 
 // ---- files ----
 
-// A data set without the mark begins with a tag of group 2 or 8, in either order of bytes, and a value's kind
-// or its length.
+// A data set without the DICM prefix begins with a tag of group 2 or 8, in either byte order, and a value
+// representation or a length.
 bool begins_bare(const char* start) {
     const auto byte = [&](int i) { return static_cast<unsigned char>(start[i]); };
     const bool group = (byte(0) == 8 || byte(0) == 2) && byte(1) == 0 && byte(3) == 0 && byte(2) < 0x20;
@@ -56,7 +55,7 @@ std::vector<std::filesystem::path> dicom_files(const std::filesystem::path& fold
     return files;
 }
 
-// Those in folders below.
+// Files in folders below.
 std::vector<std::filesystem::path> dicom_files_below(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
     int seen = 0;
@@ -76,7 +75,7 @@ std::vector<std::filesystem::path> dicom_files_below(const std::filesystem::path
 
 std::string name(const Slice& slice) { return slice.file.filename().string(); }
 
-// Groups in which each slice is alike to the first, in the order of their first.
+// Groups of slices that are alike, in the order of their first slices.
 template <class Alike>
 std::vector<Group> grouped(const Group& slices, Alike are_alike) {
     std::vector<Group> groups;
@@ -91,7 +90,7 @@ std::vector<Group> grouped(const Group& slices, Alike are_alike) {
     return groups;
 }
 
-// The largest, of those that hold a slice of the named file if one is named.
+// The largest group; if a file is named, the largest with a slice of that file.
 const Group& taken_of(const std::vector<Group>& groups, const std::filesystem::path& named) {
     const auto worth = [&](const Group& group) {
         const bool holds = std::ranges::any_of(group, [&](const Slice& s) { return s.file == named; });
@@ -121,14 +120,14 @@ std::string difference(const Slice& a, const Slice& b) {
     return b.position ? "with a position" : "without a position";
 }
 
-// A series, as a list of several tells of it.
+// A series in one line, for a list.
 std::string summary(const Group& slices, const std::filesystem::path& path) {
     const std::string& description = slices[0].description;
     return fmt::format("{} ({} slices{})", slices[0].file.lexically_relative(path).string(), slices.size(),
                        description.empty() ? "" : ", " + description);
 }
 
-// Files that are no slices, by what is the trouble with them.
+// Files that are not slices, grouped by the reason.
 std::map<std::string, Group> by_trouble(const Group& all) {
     std::map<std::string, Group> troubles;
     for (const Slice& slice : all)
@@ -138,7 +137,7 @@ std::map<std::string, Group> by_trouble(const Group& all) {
 
 [[noreturn]] void refuse_slice(const Slice& slice) { refuse(slice.trouble, slice.file, slice.remedy); }
 
-// Where there is no series: the commonest reason, if there is one.
+// If there is no series: the most common reason.
 [[noreturn]] void refuse_all(const Group& all, const std::filesystem::path& path) {
     const auto troubles = by_trouble(all);
     if (troubles.empty()) refuse("no DICOM series of more than one slice", path, "name another folder");
@@ -147,8 +146,8 @@ std::map<std::string, Group> by_trouble(const Group& all) {
     refuse_slice(worst->second[0]);
 }
 
-// Series of one slice each that are one volume for all that they say, as some exporters number every slice
-// as a series: all that are alike to the named one, or to the first. Empty if they are not.
+// Some exporters number every slice as a series. So series of one slice each that agree in everything count
+// as one volume: all that are like the named one, or the first. Empty if they differ.
 Group joined(const std::map<std::string, Group>& singles, const std::filesystem::path& named,
              std::vector<std::string>& notes) {
     Group slices;
@@ -211,7 +210,7 @@ void note_troubles(const Group& all, std::vector<std::string>& notes) {
                                     slices.size() > 1 ? ", ..." : "", trouble));
 }
 
-// A named file of several slices is enough by itself.
+// If the named file has several slices, it is taken alone.
 Group of_one_file(const Group& series, const std::filesystem::path& named, std::vector<std::string>& notes) {
     Group own;
     std::ranges::copy_if(series, std::back_inserter(own), [&](const Slice& s) { return s.file == named; });
@@ -241,7 +240,7 @@ double height(const Slice& slice) {
     return slice.location.value_or(slice.number);
 }
 
-// From one place to the next, the median; slices by height.
+// The median distance of neighbouring slices, which are sorted by height.
 double usual_step(const Group& slices) {
     const double range = height(slices.back()) - height(slices[0]);
     std::vector<double> steps;
@@ -253,7 +252,7 @@ double usual_step(const Group& slices) {
     return steps.empty() ? 0 : steps[steps.size() / 2];
 }
 
-// Slices by height, in runs that lie in one place.
+// Slices sorted by height, in runs at one place.
 std::vector<Group> places(Group slices) {
     std::stable_sort(slices.begin(), slices.end(), [](const Slice& a, const Slice& b) {
         return std::pair(height(a), a.number) < std::pair(height(b), b.number);
@@ -273,7 +272,7 @@ std::size_t most_in_a_place(const Group& slices) {
     return most;
 }
 
-// Volumes by one mark or two of their slices, if these part all that lie in one place.
+// Splits volumes by one or two marks of their slices, if these distinguish all slices at each place.
 std::vector<Group> parted(const Group& slices, std::string& by) {
     const std::size_t most = most_in_a_place(slices), marks = slices[0].marks.size();
     auto parted_by = [&](std::size_t i, std::size_t j) {
@@ -298,7 +297,7 @@ std::vector<Group> parted(const Group& slices, std::string& by) {
     return {};
 }
 
-// Whether two files are the same from where their pixels begin.
+// Whether two files have the same bytes from their pixels on.
 bool same_pixels(const Slice& a, const Slice& b) {
     if (a.file == b.file || a.frame != b.frame) return false;
     if (std::filesystem::file_size(a.file) - a.pixels_at != std::filesystem::file_size(b.file) - b.pixels_at)
@@ -309,7 +308,7 @@ bool same_pixels(const Slice& a, const Slice& b) {
     return std::equal(std::istreambuf_iterator(one), {}, std::istreambuf_iterator(other));
 }
 
-// Without those that hold the same picture in the same place.
+// Removes copies: the same image at the same place.
 Group without_copies(const Group& slices, const std::filesystem::path& named,
                      std::vector<std::string>& notes) {
     Group kept;
@@ -332,7 +331,7 @@ Group without_copies(const Group& slices, const std::filesystem::path& named,
     return kept;
 }
 
-// The first that lies in each place, the second, and so on.
+// The first slice at each place, the second, and so on.
 std::vector<Group> in_order(const Group& slices) {
     std::vector<Group> volumes(most_in_a_place(slices));
     for (const Group& place : places(slices))
@@ -375,7 +374,7 @@ struct Line {
     }
 };
 
-// By least squares, unless a step is given; in the middle between the highest and the lowest.
+// A line fit by least squares, unless a step is given; centred between the largest residuals.
 Line line_through(const std::vector<double>& heights, double step = 0) {
     const auto count = double(heights.size());
     const double middle = (count - 1) / 2,
@@ -414,8 +413,8 @@ Line line_through(const std::vector<double>& heights, double step = 0) {
            "resample it to even distances, as 3D Slicer does");
 }
 
-// Where even slices lie best. Where positions are visibly rounded, a distance that the file states counts if
-// it says the same.
+// The evenly spaced places that fit the slices best. If positions are visibly rounded, a distance that the
+// file states is preferred if it agrees.
 Line even_line(const Group& slices, const std::vector<double>& heights, double rounding,
                std::vector<std::string>& notes, const std::filesystem::path& path) {
     Line line = line_through(heights);
@@ -472,7 +471,7 @@ void note_spacing(const Slice& slice, std::vector<std::string>& notes) {
                                     slice.spacing.x, slice.spacing.y));
 }
 
-// Each once, whichever slices it is of.
+// Each doubt once, whichever slices have it.
 void note_doubts(const Group& slices, std::vector<std::string>& notes) {
     std::set<std::string> all;
     for (const Slice& slice : slices) all.insert(slice.doubts.begin(), slice.doubts.end());
@@ -526,8 +525,7 @@ Grid place(const Group& slices, const std::filesystem::path& path, std::vector<s
         origin, path);
 }
 
-// A value that says "outside the picture" must not look like tissue. Where it lies below all others it does
-// not, and stays.
+// A padding value must not look like tissue. If it is below all other values, it does not, and is kept.
 void clear_padding(const Group& slices, std::vector<float>& values) {
     if (std::ranges::none_of(slices, [](const Slice& slice) { return slice.padding.has_value(); })) return;
     const std::size_t each = values.size() / slices.size();
@@ -563,9 +561,9 @@ Stack stack(const std::vector<Slice>& all, const std::filesystem::path& named,
 
 Reading read_dicom(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path)) refuse("cannot open", path, "check the name and that it may be read");
-    const bool index = lower_name(path) == "dicomdir";  // it stands for the folder that it lies in
+    const bool index = lower_name(path) == "dicomdir";  // it stands for its folder
     const bool is_folder = index || std::filesystem::is_directory(path);
-    if (!is_folder) open_file(path);  // throws Error if it is a pipe, a device, or locked
+    if (!is_folder) open_file(path);  // throws Error if it is a pipe or a device, or cannot be read
     if (!is_folder && !holds_dicom(path)) refuse_start("DICOM", path);
     std::filesystem::path folder = std::filesystem::is_directory(path) ? path : path.parent_path();
     if (folder.empty()) folder = ".";

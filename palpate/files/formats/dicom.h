@@ -9,22 +9,23 @@
 
 namespace palpate {
 
-// DICOM in two parts: what is a volume among the slices that lie about (dicom.cpp), and what GDCM knows of a
-// file (gdcm.cpp). Lengths are in millimetres.
+// DICOM in two parts: finding a volume among slices (dicom.cpp), and reading a file with GDCM (gdcm.cpp).
+// Lengths are in millimetres.
 
-/// One picture of a DICOM file, as far as its header tells.
+/// One image of a DICOM file, as its header describes it.
 struct Slice {
     std::filesystem::path file;
     int frame = 0;  // of a file with several
-    /// Why it is no slice of any volume, and what to do with it; else empty.
+    /// Why it cannot be a slice of a volume, and what to do about it; otherwise empty.
     std::string trouble, remedy;
-    bool damaged = false;  // it would be one, were it whole
+    bool damaged = false;  // it is a slice of which some is missing
 
-    std::string series;       // what slices of one series share
-    std::string study;        // what series of one examination share, with the patient
+    std::string series;       // the identifier of its series
+    std::string study;        // the identifier of its examination, and of the patient
     std::string description;  // of the series
-    int number = 0;           // the scanner's own count
-    /// What may part volumes in one place: time, echo, ..., each with its name, in the order of preference.
+    int number = 0;           // the scanner's numbering
+    /// What may distinguish volumes in one place: time, echo, ..., each with its name, in order of
+    /// preference.
     std::vector<std::pair<std::string, std::string>> marks;
 
     ivec2 size = ivec2(0);
@@ -37,12 +38,12 @@ struct Slice {
     double thickness = 0, between = 0;  // of slices; 0: not stated
 
     double slope = 1, intercept = 0;
-    std::optional<dvec2> padding;     // the least and the most of what is outside the picture, as values
-    std::vector<std::string> doubts;  // what its header says in a way that cannot be taken as it stands
-    std::size_t pixels_at = 0;        // byte of the file at which its pixels begin
+    std::optional<dvec2> padding;     // the range of the values that mark pixels outside the image
+    std::vector<std::string> doubts;  // the attributes of its header that are malformed
+    std::size_t pixels_at = 0;        // the offset of its pixels in the file, bytes
 };
 
-/// What GDCM finds in the headers of these files: one slice a picture, or one with `trouble`.
+/// Reads the headers of these files with GDCM: one slice for each image, or one with `trouble`.
 std::vector<Slice> scan(const std::vector<std::filesystem::path>& files);
 
 /// The values of these slices, one after the other; slope and intercept, or a table, are applied. `path`: for
@@ -50,15 +51,15 @@ std::vector<Slice> scan(const std::vector<std::filesystem::path>& files);
 /// Throws Error if one is truncated, damaged, or packed in a way that GDCM does not know.
 std::vector<float> read_pixels(const std::vector<Slice>& slices, const std::filesystem::path& path);
 
-/// Slices of one volume, from the lowest to the highest, and where they lie.
+/// The slices of one volume, from the lowest to the highest, and their grid.
 struct Stack {
     std::vector<Slice> slices;
     Grid grid;
 };
 
-/// The volume among slices: that of `named`, a file, or if it is empty the only series' largest. `notes` gets
-/// a line on what is left out and what was assumed. Throws Error, with a list of the series, if there are
-/// several; or if the slices do not lie evenly and straight above each other.
+/// Finds the volume among slices: that of the file `named` or, if that is empty, the largest of the only
+/// series. `notes` gets a line on what was skipped and assumed. Throws Error if there are several series,
+/// with a list, or if the slices are not evenly spaced and aligned.
 Stack stack(const std::vector<Slice>& all, const std::filesystem::path& named,
             const std::filesystem::path& path, std::vector<std::string>& notes);
 

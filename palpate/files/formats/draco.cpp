@@ -26,10 +26,10 @@ std::vector<double> corners_of(const draco::Mesh& mesh) {
     return corners;
 }
 
-// As they are stored: what whole numbers stand for is said in the glTF.
+// Raw numbers: the glTF says how to scale integers.
 std::vector<double> numbers_of(draco::Mesh& mesh, std::uint32_t id, const Source& source) {
     const int place = mesh.GetAttributeIdByUniqueId(id);
-    if (place < 0) source.broken(fmt::format("no attribute {} in what Draco packed", id));
+    if (place < 0) source.broken(fmt::format("a Draco mesh without attribute {}", id));
     draco::PointAttribute& attribute = *mesh.attribute(place);
     attribute.set_normalized(false);
     const auto components = std::size_t(attribute.num_components());

@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// A mesh that Draco packed, and which of its attributes are wanted.
+/// A mesh compressed by Draco, and which of its attributes are wanted.
 struct DracoPacked {
     std::string_view bytes;
     std::vector<std::uint32_t> attributes;  // their ids
@@ -16,11 +16,11 @@ struct DracoPacked {
 struct DracoMesh {
     std::vector<double> corners;  // of triangles
     std::vector<std::vector<double>>
-        attributes;  // all numbers of each, in the order in which they were asked for
+        attributes;  // all numbers of each, in the order of DracoPacked::attributes
 };
 
-/// Unpacks them all, in one process of its own, to no more than `most` bytes in all. Throws Error, for the
-/// file that is `source`.
+/// Decompresses them all, in one process of its own, to at most `most` bytes in total. Throws Error for the
+/// file `source`.
 std::vector<DracoMesh> unpack_draco(const std::vector<DracoPacked>& packed, const Source& source,
                                     std::size_t most);
 

@@ -20,12 +20,12 @@ bool finite(glm::vec<L, double> v) {
     return true;
 }
 
-// What belongs to vertices: all of it, or with a note nothing where some is not finite.
+// An attribute of vertices; dropped with a note if some of it is not finite.
 template <int L>
 std::vector<glm::vec<L, float>> attribute(const std::vector<glm::vec<L, double>>& values,
                                           std::string_view what, std::vector<std::string>& notes) {
     if (std::all_of(values.begin(), values.end(), finite<L>)) return {values.begin(), values.end()};
-    notes.push_back(fmt::format("left the {} out, of which some are not finite", what));
+    notes.push_back(fmt::format("left the {} out, because some are not finite", what));
     return {};
 }
 
@@ -49,7 +49,7 @@ void check(const Draft& draft, const std::string& name) {
                                    draft.sizes.size(), draft.corners[corner], draft.positions.size()));
 }
 
-// The box around points, of which there is one at least.
+// The bounding box of points, of which there is at least one.
 struct BoxOfPoints {
     dvec3 low, high;
 };
@@ -60,14 +60,14 @@ BoxOfPoints box_of_points(std::span<const dvec3> points) {
     return box;
 }
 
-// Of the 24 bits of a float, 11 may go for the distance.
+// Of the 24 bits of a float's mantissa, 11 may be used up by the distance.
 bool too_far_for_floats(const BoxOfPoints& box) {
     const dvec3 size = box.high - box.low, far = glm::max(glm::abs(box.low), glm::abs(box.high));
     const double longest = std::max({size.x, size.y, size.z});
     return longest != 0 && longest * 0x1p11 < std::max({far.x, far.y, far.z});
 }
 
-// Where to begin to count from, so that floats keep the shape. `scale`: m per unit of the file.
+// The new origin with which floats keep the shape. `scale`: m per unit of the file.
 dvec3 origin_for(const Draft& draft, double scale, const std::string& name, std::vector<std::string>& notes) {
     const BoxOfPoints box = box_of_points(draft.positions);
     if (!too_far_for_floats(box)) return dvec3(0);

@@ -11,27 +11,27 @@ namespace palpate {
 
 using Index = std::uint32_t;
 
-/// A surface as a file tells it: polygons, in the file's units, with nothing checked yet.
+/// A surface as it is in a file: polygons, in the file's units, unchecked.
 struct Draft {
-    double unit = 0;  // m, the length that the file states its numbers to be in; 0: it does not
+    double unit = 0;  // m, the unit of length that the file states; 0: none
     std::vector<dvec3> positions;
-    std::vector<dvec3> normals;        // one a vertex; or empty
-    std::vector<dvec2> uvs{};          // one a vertex, as a Mesh has them; or empty
+    std::vector<dvec3> normals;        // one for each vertex; or empty
+    std::vector<dvec2> uvs{};          // one for each vertex, as in a Mesh; or empty
     std::vector<Index> corners;        // of all faces, one face after the other
-    std::vector<Index> sizes;          // how many of them each face has
-    std::size_t loose = 0;             // points and lines that are already left out
-    bool single = false;               // the positions were floats: what those have lost is lost
-    std::vector<std::string> notes{};  // what the reader left out
+    std::vector<Index> sizes;          // the number of corners of each face
+    std::size_t loose = 0;             // how many points and lines were skipped
+    bool single = false;               // the positions were floats, with the precision of floats
+    std::vector<std::string> notes{};  // what the reader skipped
 };
 
-/// Whether floats at these places would lose the shape.
+/// Whether the precision of floats is too low for these positions.
 bool too_far_for_floats(std::span<const dvec3> positions);
 
-/// Makes a mesh of it, of its faces of three corners or more, in metres: by `units`; where those are not
-/// given, by the unit that the file states, or as it stands. If both are there and differ, a note says so.
-/// What lies so far from the origin that floats would lose its shape is moved there, and a note says so.
-/// Throws Error, with `name` for the file, if there are no faces, if one names a vertex that does not exist,
-/// if a position is no finite float, or if the shape is lost already.
+/// Makes a mesh, in metres, of the faces with three corners or more: by `units`; if those are not given, by
+/// the unit that the file states, or else unscaled. If both are given and differ, a note says so. A mesh so
+/// far from the origin that floats would lose its shape is moved to the origin, and a note says so. Throws
+/// Error, with `name` for the file, if there are no faces, if one has the index of a missing vertex, if a
+/// position is not a finite float, or if the shape is already lost.
 Mesh finish(const Draft& draft, std::optional<Units> units, const std::string& name,
             std::vector<std::string>* notes);
 

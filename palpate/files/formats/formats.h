@@ -4,8 +4,8 @@
 
 namespace palpate {
 
-// One reader a format. Each throws Error if the file is truncated or damaged, and allocates for what is
-// there only, never for what the file claims.
+// One reader for each format. Each throws Error if the file is truncated or damaged, and allocates only for
+// what is there, never for what the file claims.
 
 Draft read_3mf(Source source);
 Draft read_gltf(Source source);  // and GLB
@@ -20,7 +20,7 @@ Draft read_x3d(Source source);         // X3D as XML
 /// Whether assimp has a reader for files of this ending (".fbx").
 bool assimp_knows(const std::string& ending);
 
-/// Reads the file in a process of its own, by the ending of its name.
+/// Reads the file in a process of its own, by its extension.
 Draft read_with_assimp(const Source& source);
 
 }  // namespace palpate

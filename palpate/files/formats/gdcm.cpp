@@ -21,7 +21,7 @@
 #include <cstring>
 #include <span>
 
-// GDCM crashes on some files, or wants all memory. So it works in processes of its own.
+// GDCM crashes on some files, or allocates without limit. So it runs in processes of its own.
 
 namespace palpate {
 namespace {
@@ -32,7 +32,7 @@ using Json = nlohmann::json;
 
 const Tag pixels(0x7fe0, 0x0010);
 
-// The sequences in which a file with several pictures keeps what others say outright.
+// The sequences in which a multi-frame file stores what others store at top level.
 const Tag pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145),
     plane_position(0x0020, 0x9113), plane_orientation(0x0020, 0x9116);
 
@@ -58,7 +58,7 @@ const DataSet* item(const DataSet& set, const Tag& tag, std::size_t number) {
     return &sequence->GetItem(number + 1).GetNestedDataSet();
 }
 
-// One picture's attributes: its own and the shared ones of a file with several, then the file's.
+// The attributes of one frame: its own and the shared ones of a multi-frame file, then the file's.
 struct Attributes {
     const DataSet& file;
     const DataSet* own = nullptr;
@@ -84,7 +84,7 @@ struct Attributes {
     }
 };
 
-// "1.25\-3": nothing unless all are finite numbers. Some exporters write "1,25"; it can mean nothing else.
+// "1.25\-3": nothing unless all are finite numbers. Some exporters write "1,25", which is unambiguous.
 std::vector<double> numbers(std::string text) {
     std::ranges::replace(text, ',', '.');
     std::string_view rest = text;
@@ -103,7 +103,7 @@ std::optional<double> number(const std::string& text) {
     return all.empty() ? std::nullopt : std::optional(all[0]);
 }
 
-// The last decimal place of the finest of some numbers, zeros at the end apart: 0.1 for "12.5\3".
+// The last decimal place of the most precise of some numbers, ignoring final zeros: 0.1 for "12.5\3".
 double last_place(std::string_view text) {
     int most = 0;
     if (text.find_first_of("eE") != std::string_view::npos) return 1e-6;
@@ -178,7 +178,7 @@ double as_stored(std::uint16_t word, bool has_sign) {
     return has_sign ? double(std::int16_t(word)) : double(word);
 }
 
-// What turns stored numbers into values where slope and intercept do not: the Modality LUT.
+// The Modality LUT, which maps stored numbers to values in place of slope and intercept.
 struct LookUpTable {
     double first = 0;  // the stored number that its first value is for
     std::vector<float> values;
@@ -208,7 +208,7 @@ LookUpTable table_of(const DataSet& set, bool has_sign) {
     return table;
 }
 
-// What lies outside the picture, from the least to the most, as it is stored. (PS3.3 C.7.5.1.1.2)
+// The range of pixel padding, as stored (PS3.3 C.7.5.1.1.2).
 std::optional<dvec2> padding_of(const DataSet& set, bool has_sign) {
     const auto one = words(set, Tag(0x0028, 0x0120)), limit = words(set, Tag(0x0028, 0x0121));
     if (one.empty()) return std::nullopt;
@@ -291,7 +291,7 @@ Slice damaged(Slice slice) {
     return troubled(std::move(slice), "a truncated or damaged DICOM file", "get it again, or move it away");
 }
 
-// Pixels that GDCM has no decoder for, or a data set written in a way that it does not know.
+// A compression that GDCM cannot decode, or an unknown transfer syntax.
 Slice packed(Slice slice, const gdcm::File& file) {
     const std::string syntax = text(file.GetHeader(), Tag(0x0002, 0x0010));
     return troubled(std::move(slice),
@@ -330,7 +330,7 @@ std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
         return troubled(plain, "float pixels (FloatPixelData), which are not read,",
                         "export it with whole numbers, or as NIfTI or NRRD");
     if (set.FindDataElement(tables) && table_of(set, is_signed(format)).values.empty())
-        return troubled(plain, "a table of values (ModalityLUTSequence) that is not whole",
+        return troubled(plain, "an incomplete table of values (ModalityLUTSequence)",
                         "export it with RescaleSlope and RescaleIntercept");
     return std::nullopt;
 }
@@ -369,7 +369,7 @@ std::vector<Slice> tomogram_slices(const DataSet& set, Slice plain, std::size_t 
     return stacked(plain, {first[0], first[1], first[2]}, offsets);
 }
 
-// Why a file of several pictures is no volume.
+// Why a multi-frame file is not a volume.
 Slice film(const DataSet& set, const Slice& plain, std::size_t frames) {
     const bool nuclear = text(set, Tag(0x0008, 0x0060)) == "NM";
     return troubled(plain,
@@ -390,7 +390,7 @@ std::vector<Slice> slices_of(const gdcm::File& file, Slice plain, double left) {
     const std::size_t frames = sizes.size() > 2 ? std::max(sizes[2], 1u) : 1;
     const gdcm::TransferSyntax& syntax = file.GetHeader().GetDataSetTransferSyntax();
     const double promised = double(sizes[0]) * sizes[1] * double(frames) * format.GetPixelSize();
-    // GDCM fills up what a file lacks. A packed one's length tells nothing.
+    // GDCM pads a file that is too short. The length of a compressed one says nothing.
     if (!syntax.IsEncapsulated() && syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian &&
         !(promised <= left))
         return {damaged(plain)};
@@ -518,7 +518,7 @@ Slice slice_from(const Json& json, const std::vector<std::filesystem::path>& fil
 // Whether a process of GDCM's ended as it should not, and not for want of what this one needs to start it.
 bool is_of_gdcm(const Error& error) { return std::string_view(error.what()).starts_with("GDCM "); }
 
-// If GDCM crashes on one of them, the halves are scanned apart, until it is found.
+// If GDCM crashes on one of them, each half is scanned separately, until the file is found (bisection).
 void scan(const std::vector<std::filesystem::path>& files, std::vector<Slice>& all) try {
     if (files.empty()) return;
     std::size_t largest = 0;

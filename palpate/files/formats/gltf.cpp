@@ -1,6 +1,6 @@
-// The surfaces of a glTF 2.0 file at rest: what places vertices is obeyed (nodes, skins, weights of morph
-// targets, instances), what gives them a look is read over, and a file that requires what is not known here
-// is refused.
+// The surfaces of a glTF 2.0 file at rest. Everything that places vertices is applied (nodes, skins, weights
+// of morph targets, instances), appearance is ignored, and a file that requires an unknown extension is
+// refused.
 #include "palpate/base/error.h"
 #include "palpate/files/formats/formats.h"
 #include "palpate/files/formats/gltf_file.h"

@@ -205,7 +205,7 @@ GltfFile::View GltfFile::view(const Json& which) {
     return {known->second, stride};
 }
 
-// meshoptimizer's decoders write as much as they are told and no more.
+// meshoptimizer's decoders never write more than they are told.
 std::string GltfFile::unpack(const Json& packing, std::size_t stride) {
     const std::string_view bytes = cut(packing);
     const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());

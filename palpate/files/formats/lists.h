@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-// Lists of plain values on their way out of a process of its own (isolated.h): how many, and then all.
+// Serialises lists of plain values for isolated work (isolated.h): the count, and then the values.
 
 template <class T>
 void put(std::FILE* to, const std::vector<T>& list) {

@@ -12,16 +12,16 @@
 #include <istream>
 #include <utility>
 
-// NIfTI-1, NIfTI-2 and Analyze 7.5. A file may state where its voxels lie in three ways (a matrix, the sform;
-// a quaternion, the qform; spacings alone). The first of them counts that it states, as for nibabel, FSL and
-// SPM, so that a label and its image lie on each other, whichever program wrote them.
+// NIfTI-1, NIfTI-2 and Analyze 7.5. A file may state the place of its voxels in three ways (a matrix, the
+// sform; a quaternion, the qform; spacings alone). The first one that is present is used, as in nibabel, FSL
+// and SPM, so a label volume lies on its image, whichever program wrote them.
 
 namespace palpate {
 namespace {
 
 enum class Form { one_file, pair, analyze };
 
-// What all three kinds of header say.
+// The common content of the three kinds of header.
 struct Header {
     Form form = Form::one_file;
     bool big_endian = false;
@@ -33,7 +33,7 @@ struct Header {
     std::array<double, 12> matrix{};  // row by row
 };
 
-// The bytes of a header, whose numbers may be in either order.
+// The bytes of a header, in either byte order.
 class Bytes {
  public:
     Bytes(const char* bytes, bool swapped) : bytes_(bytes), swapped_(swapped) {}
@@ -129,7 +129,7 @@ Header read_header(std::istream& in, const std::filesystem::path& path) {
 // NIfTI's axes run right, forward and up; ours left, back and up.
 const dmat3 to_ours(dvec3(-1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, 1));
 
-// One of the ways in which a file states a place: what it is called, and what comes of it.
+// One of the ways in which a file states its place: its name and the resulting grid.
 struct Stated {
     std::string name;
     std::optional<Grid> grid;
@@ -154,7 +154,7 @@ Stated by_quaternion(const Header& header, ivec3 dims, dvec3 spacing) {
             grid_of(dims, to_ours * steps, to_ours * header.origin)};
 }
 
-// Where nothing is said of it: around the origin, and to the left, as for nibabel.
+// Without any statement: centred at the origin, with x to the left, as in nibabel.
 Stated by_spacing(ivec3 dims, dvec3 spacing) {
     const dmat3 steps(dvec3(spacing.x, 0, 0), dvec3(0, -spacing.y, 0), dvec3(0, 0, spacing.z));
     return {"spacing alone", grid_of(dims, steps, -(steps * (dvec3(dims - 1) * 0.5)))};

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-// A backslash continues a line, so it and the line's end behind it are space.
+// A backslash continues a line, so it counts as a space together with the end of the line.
 constexpr std::string_view space = " \t\r\n\v\f\\";
 
 // For each vector the first that equals it bit for bit.
@@ -65,7 +65,7 @@ class Obj {
         return v;
     }
 
-    // What bears on no shape may be no number: it is left out later.
+    // Attributes that do not affect the shape need not be finite: they are dropped later.
     static double any_number(std::string_view& words) {
         return spelled(word(words, space)).value_or(std::numeric_limits<double>::quiet_NaN());
     }
@@ -104,7 +104,7 @@ class Obj {
         if (all_normals_) corner_normals_.resize(corners_.size());
     }
 
-    // OBJ counts from 1, or backwards from the last one so far. What names nothing is `nowhere`.
+    // OBJ counts from 1, or backwards from the last one so far. An index of nothing becomes `nowhere`.
     static constexpr Index nowhere = ~Index(0);
     static Index index(std::string_view text, std::size_t so_far) {
         const double number = spelled(text).value_or(0);
@@ -120,7 +120,7 @@ class Obj {
         return found;
     }
 
-    // Whether all corners name one that is there; else a note says how many do not.
+    // Whether all corners have a valid index; otherwise a note says how many do not.
     static bool all_there(const std::vector<Index>& numbers, std::size_t count, std::string_view what,
                           Draft& draft) {
         const auto astray = std::ranges::count_if(numbers, [&](Index n) { return n >= count; });
@@ -177,7 +177,7 @@ class Obj {
     bool all_uvs_ = true, all_normals_ = true;  // each corner has one
     bool any_uv_ = false, any_normal_ = false;  // some corner has one
     bool cut_off_ = false;                      // the last line may be
-    std::size_t loose_ = 0, free_forms_ = 0;    // what is left out
+    std::size_t loose_ = 0, free_forms_ = 0;    // what is skipped
 };
 
 }  // namespace

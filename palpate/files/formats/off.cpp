@@ -63,9 +63,9 @@ class Off {
         if (peek() == "BINARY") source_.broken("a binary OFF, which is not read,", "export it as text");
     }
 
-    // The number of edges, which nobody keeps right and some leave out: behind the other counts, or alone in
-    // a line. Where there are lines enough, each row is one, and may end with colours; where there are not,
-    // rows are words.
+    // The number of edges, which is often wrong or missing: after the other counts, or on a line of its own.
+    // If there are enough lines, each row is a line, and may end with colours; otherwise rows are read word
+    // by word.
     void read_edges(double vertices, double rows) {
         Source ahead = source_;
         std::string_view here = before_comment(ahead.line());

@@ -9,15 +9,15 @@
 
 namespace palpate {
 
-/// Where a part of a file stands: turned, which may scale and mirror it, and then moved.
+/// An affine transform of a part of a file: a linear map, which may scale and mirror, and then a translation.
 struct Place {
     dmat3 turn = dmat3(1);
     dvec3 move = dvec3(0);
 
     dvec3 of(dvec3 point) const { return turn * point + move; }
 
-    /// A normal, made unit. Normals turn with planes: by the cofactors, which cross products of the columns
-    /// are.
+    /// Transforms a normal, made unit: by the cofactors of the matrix, which are cross products of its
+    /// columns.
     dvec3 normal(dvec3 n) const {
         const dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
                               glm::cross(turn[0], turn[1]));
@@ -29,12 +29,12 @@ struct Place {
     bool mirrors() const { return glm::determinant(turn) < 0; }
 };
 
-/// Whether faces between these places are to be turned over: most of them mirror.
+/// Whether faces must be flipped, because most of these transforms mirror.
 inline bool mostly_mirrored(std::span<const Place> places) {
     return 2 * std::size_t(std::ranges::count_if(places, &Place::mirrors)) > places.size();
 }
 
-/// Where bones carry vertices: each to the mean of its bones' places, by weight.
+/// Linear blend skinning: the weighted mean of the bones' transforms for each vertex.
 class MeanPlaces {
  public:
     explicit MeanPlaces(std::size_t vertices)
@@ -46,7 +46,7 @@ class MeanPlaces {
         weights_[vertex] += weight;
     }
 
-    /// One a vertex; `otherwise` where its weights are not more than 0 in all.
+    /// One for each vertex; `otherwise` if the sum of its weights is not above 0.
     std::vector<Place> take(const Place& otherwise) && {
         for (std::size_t i = 0; i < sums_.size(); ++i)
             sums_[i] =
@@ -59,14 +59,14 @@ class MeanPlaces {
     std::vector<double> weights_;
 };
 
-/// What stands at `inner` in a part that itself stands at `outer`.
+/// The composition: `inner`, then `outer`.
 inline Place operator*(const Place& outer, const Place& inner) {
     return {outer.turn * inner.turn, outer.of(inner.move)};
 }
 
 inline dmat3 scale_by(dvec3 s) { return {s.x, 0, 0, 0, s.y, 0, 0, 0, s.z}; }
 
-/// By an angle (rad) about an axis of any length; about none, if that has no length.
+/// A rotation by an angle (rad) about an axis of any length; the identity if the axis is zero.
 inline dmat3 turn_about(dvec3 axis, double angle) {
     const double length = glm::length(axis);
     if (!(length > 0)) return dmat3(1);

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-// A kind of number; all of them are exact in double, as far as anybody counts.
+// A number type; all are exact in double for practical sizes.
 struct Kind {
     std::string_view name, other_name;
     std::size_t bytes;
@@ -34,7 +34,7 @@ constexpr Kind kinds[] = {
     {"int64", "long", 8, load<std::int64_t>},  {"uint64", "ulong", 8, load<std::uint64_t>},
     {"float", "float32", 4, load<float>},      {"double", "float64", 8, load<double>}};
 
-// What a mesh has a place for.
+// The properties that a mesh can hold.
 constexpr std::string_view columns[] = {"x", "y", "z", "nx", "ny", "nz", "u", "v"};
 constexpr int corners = 8, other = 9;
 
@@ -104,7 +104,7 @@ class Ply {
                 source_.broken("more than one " + std::string(name) + " in its header");
         normals_ = has("nx") && has("ny") && has("nz");
         if (!normals_ && (has("nx") || has("ny") || has("nz")))
-            draft_.notes.push_back("left the normals out, which are not whole (nx, ny and nz)");
+            draft_.notes.push_back("left the normals out, because nx, ny or nz is missing");
         uvs_ = found_.count("u") == 1 && found_.count("v") == 1;  // else they may mean anything
     }
 

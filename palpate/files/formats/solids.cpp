@@ -23,7 +23,7 @@ dvec3 on_circle(double radius, double y, Index k) {
     return {radius * std::sin(angle), y, radius * std::cos(angle)};
 }
 
-// Points round y; returns the number of the first.
+// Adds points around y; returns the index of the first.
 Index add_ring(Draft& draft, double radius, double y) {
     const Index first = Index(draft.positions.size());
     for (Index k = 0; k < around; ++k) draft.positions.push_back(on_circle(radius, y, k));
@@ -42,7 +42,7 @@ void add_band(Draft& draft, Index below, Index over) {
         add_face(draft, {below + k, below + next(k), over + next(k), over + k});
 }
 
-// From a point up or down to the ring; the point is seen from outside over or under it.
+// A fan from a point to a ring below or above it.
 void add_cap(Draft& draft, Index ring, Index point, bool over) {
     for (Index k = 0; k < around; ++k)
         add_face(draft, {ring + (over ? k : next(k)), ring + (over ? next(k) : k), point});
@@ -58,15 +58,15 @@ dvec3 unit_or_zero(dvec3 v) {
     return length > 0 ? v / length : dvec3(0);
 }
 
-// The turn that takes y to a direction by the shortest way.
+// The shortest rotation from y to a direction.
 dmat3 from_y_to(dvec3 direction) {
     const dvec3 axis = glm::cross(dvec3(0, 1, 0), direction);
     const double sine = glm::length(axis), cosine = direction.y;
     return turn_about(sine > 0 ? axis : dvec3(1, 0, 0), std::atan2(sine, cosine));
 }
 
-// For each point of a spine the axes in which its cross section lies: y along the spine, z out of its bend.
-// Where it does not bend, z stays; where it bends nowhere, all turn as y does.
+// The frame of the cross section at each point of a spine: y along the spine, z perpendicular to its bend.
+// Where it is straight, z is kept; if it is straight everywhere, all frames rotate with y.
 std::vector<dmat3> frames_along(std::span<const dvec3> spine, bool closed) {
     const std::size_t n = spine.size();
     std::vector<dvec3> along(n), out(n);
@@ -90,7 +90,7 @@ std::vector<dmat3> frames_along(std::span<const dvec3> spine, bool closed) {
     return frames;
 }
 
-// Of a list that may end early its last.
+// Entry i of a list, or its last entry.
 template <class T>
 T value_at(const std::vector<T>& list, std::size_t i, T fallback) {
     return list.empty() ? fallback : list[std::min(i, list.size() - 1)];

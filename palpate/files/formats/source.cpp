@@ -12,7 +12,7 @@ namespace palpate {
 
 namespace {
 
-// Whether a path leads nowhere but to a folder's files and those below it.
+// Whether a relative path stays within its folder.
 bool stays_below(const std::filesystem::path& path) {
     const std::filesystem::path plain = path.lexically_normal();
     return plain.is_relative() && plain.has_filename() && *plain.begin() != ".." && plain != ".";
@@ -130,7 +130,7 @@ std::string percent_decoded(std::string_view uri) {
 
 std::optional<double> spelled(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
-    double value = std::numeric_limits<double>::infinity();  // stays so where the number is out of range
+    double value = std::numeric_limits<double>::infinity();  // stays infinite if the number is out of range
     const char* const last = word.data() + word.size();
     const auto [end, error] = std::from_chars(word.data(), last, value);
     if (error == std::errc::invalid_argument) return {};

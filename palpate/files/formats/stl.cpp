@@ -39,8 +39,8 @@ std::size_t place_of(std::string_view what, std::string_view text) {
     return found == text.end() ? std::string_view::npos : std::size_t(found - text.begin());
 }
 
-// A text has no zeros, of which a binary file has some in the number of its facets; but some programs fill up
-// the name in its first line with them.
+// A text has no zero bytes, but a binary file has some in its facet count. Some programs pad the name in the
+// first line of a text with zeros, though.
 bool is_text(std::string_view bytes) {
     const auto has = [&](std::string_view what) { return place_of(what, bytes) != std::string_view::npos; };
     const std::size_t first_line = bytes.substr(0, 200).find_first_of("\r\n");
@@ -176,7 +176,8 @@ class StlText {
 }  // namespace
 
 Draft read_stl(Source source) {
-    // Many a binary file begins with "solid" too. What has just the size that it promises is binary.
+    // Many binary files begin with "solid", too. A file of exactly the size that its facet count implies is
+    // binary.
     const std::string_view bytes = source.whole();
     if (bytes.size() >= head_bytes && bytes.size() == head_bytes + facet * promised(bytes))
         return read_binary(source);

@@ -4,8 +4,8 @@
 
 namespace palpate {
 
-/// Throws Error where a file's first bytes (500 are enough) show that it is neither a mesh nor a volume,
-/// whatever its name says: a web page that was downloaded in its place, a pointer of Git LFS, an archive.
+/// Throws Error if a file's first bytes (500 are enough) show that it is neither a mesh nor a volume,
+/// whatever its name: a web page that was downloaded in its place, a Git LFS pointer, an archive.
 void refuse_strangers(std::string_view bytes, const std::string& name);
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
-// 3MF: a ZIP archive in which one or more files of XML tell of objects, each a mesh or put together of
-// others, and of what is built of them. Read are meshes, components, their places and the unit, also where
-// objects lie in files of their own (the production extension); colours and what belongs to printing are read
-// over.
+// 3MF: a ZIP archive with one or more XML files of objects, each a mesh or composed of others, and of the
+// items to build. We read meshes, components, transforms and the unit, also of objects in files of their own
+// (the production extension); we skip colours and what concerns printing.
 #include "palpate/base/error.h"
 #include "palpate/files/formats/budget.h"
 #include "palpate/files/formats/formats.h"
@@ -112,7 +111,7 @@ class ThreeMf {
     }
 
  private:
-    // What is no part of anything else.
+    // The objects that are not part of another one.
     void build_all() {
         std::set<Name> parts;
         for (const auto& [name, object] : objects_)

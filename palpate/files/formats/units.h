@@ -6,8 +6,7 @@
 
 namespace palpate {
 
-/// How many metres a unit of length is, by a name in small letters ("mm", "micron"); nothing if none is known
-/// by that name.
+/// Metres per unit of length, by its name in small letters ("mm", "micron"); nothing if the name is unknown.
 inline std::optional<double> metres_of(std::string_view name) {
     constexpr std::pair<std::string_view, double> all[] = {
         {"m", 1},

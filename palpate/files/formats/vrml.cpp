@@ -1,7 +1,7 @@
-// VRML 2, and X3D in its words, as far as they tell of surfaces: sets of faces and of triangles, and the
-// solids that have a name, in Shapes, in nodes that group and move them. All else is read over. Nothing is
-// kept of the tree: faces go straight to the draft, in the node's own coordinates, and a Transform then moves
-// what its children have added. DEF keeps where in the text a node stands, and USE reads it there once more.
+// VRML 2, and X3D in its syntax, as far as surfaces are concerned: face sets, triangle sets and primitive
+// shapes, in Shapes, in grouping and transform nodes. Everything else is skipped. No tree is kept: faces go
+// straight into the draft, in the node's own coordinates, and a Transform then moves what its children have
+// added. DEF stores the position of a node in the text, and USE parses it there again.
 #include "palpate/files/formats/formats.h"
 #include "palpate/files/formats/place.h"
 #include "palpate/files/formats/solids.h"
@@ -22,7 +22,7 @@ namespace {
 
 constexpr int most_nested = 200;
 
-// How much may be read in all because a USE repeats it: enough for a forest, too little for a bomb.
+// How much text may be read again because of USE: enough for a forest, too little for a bomb.
 constexpr std::size_t repeated_bytes = std::size_t(16) << 20, repeated_times = 16;
 
 // How many solids, of which a round one takes 20 kB: enough for a molecule.

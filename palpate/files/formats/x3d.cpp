@@ -1,5 +1,5 @@
-// X3D is VRML with more kinds of nodes, as XML or in VRML's own words. So XML is put into those words, with
-// each element in the line where it was, and read as they are. Only what tells of surfaces is put over.
+// X3D is VRML with more kinds of nodes, as XML or in VRML's syntax. So XML is translated into VRML's syntax,
+// with each element on its original line, and read as such. Only what concerns surfaces is translated.
 #include "palpate/files/formats/formats.h"
 #include "palpate/files/formats/xml.h"
 

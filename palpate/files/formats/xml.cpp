@@ -12,13 +12,13 @@ namespace {
 
 std::string_view without_prefix(std::string_view name) { return name.substr(name.find(':') + 1); }
 
-// What the parser calls back. Nothing may be thrown through a library in C, so it is kept.
+// The parser's callbacks. Exceptions must not pass through a C library, so they are stored.
 struct XmlReading {
     XML_Parser parser;
     const std::function<bool(const XmlElement&)>& begins;
     const std::function<void(std::string_view)>& ends;
     bool left_off = false;
-    const char* refused = nullptr;  // what makes a large file of a small one
+    const char* refused = nullptr;  // a construct with which a small file expands to a large one
     std::exception_ptr thrown{};
 
     template <class F>
