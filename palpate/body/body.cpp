@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 namespace palpate {
@@ -85,12 +86,24 @@ void check(const Body& body) {
                         "give them in N/m and m");
             require(std::ranges::all_of(grid->strength, is_some), "a strength that is negative or not finite",
                     "use 0 or more");
-        } else {
-            for (const Spring& spring : std::get<ListedSprings>(term).springs)
+        } else if (const auto* listed = std::get_if<ListedSprings>(&term)) {
+            for (const Spring& spring : listed->springs)
                 require(
                     has(spring.a) && has(spring.b) && is_some(spring.stiffness) && is_some(spring.rest),
                     "a spring to a node that it does not have, or whose numbers are negative or not finite",
                     "count nodes from 0");
+        } else {
+            for (const Hinge& hinge : std::get<Bending>(term).hinges) {
+                std::array nodes{hinge.from, hinge.to, hinge.left, hinge.right};
+                std::ranges::sort(nodes);
+                require(std::ranges::all_of(nodes, has) && std::ranges::adjacent_find(nodes) == nodes.end() &&
+                            is_some(hinge.stiffness),
+                        "a hinge whose four nodes it does not have or are not four, or whose stiffness is "
+                        "negative or not finite",
+                        "count nodes from 0");
+                require(std::abs(hinge.rest) <= 2, "a hinge bent by more than half a turn at rest",
+                        "give it twice the sine of half the angle, from -2 to 2");
+            }
         }
     const int links = body.grid() ? int(body.grid()->links.size()) : 0;
     const bool has_rings = !body.rings.empty() || links == 0;
@@ -139,6 +152,8 @@ void add_ties(const Body&, const ListedSprings& listed, std::vector<std::vector<
     }
 }
 
+void add_ties(const Body&, const Bending&, std::vector<std::vector<Tie>>&) {}  // no springs
+
 // The neighbours round a node come first, each with the first spring to it, if there is one.
 std::vector<Tie> in_a_ring(const Body& body, std::size_t node, std::vector<Tie> ties) {
     std::vector<Tie> sorted;
@@ -166,7 +181,7 @@ std::vector<Tie> in_a_ring(const Body& body, std::size_t node, std::vector<Tie> 
 Table table(const Body& body) {
     std::vector<std::vector<Tie>> lists(body.count());
     for (const Term& term : body.terms)
-        std::visit([&](const auto& springs) { add_ties(body, springs, lists); }, term);
+        std::visit([&](const auto& one) { add_ties(body, one, lists); }, term);
     if (!body.rings.empty())
         for (std::size_t i = 0; i < lists.size(); ++i) lists[i] = in_a_ring(body, i, std::move(lists[i]));
     Table table;
@@ -177,6 +192,37 @@ Table table(const Body& body) {
         table.ties.resize(table.ties.size() + std::size_t(table.width) - list.size());
     }
     return table;
+}
+
+namespace {
+
+// m⁴, of a triangle of nodes at rest.
+float area_square(const Body& body, int a, int b, int c) {
+    const vec3 from = body.positions[std::size_t(a)], to = body.positions[std::size_t(b)] - from,
+               third = body.positions[std::size_t(c)] - from;
+    const vec3 doubled = glm::cross(to, third);
+    return 0.25f * glm::dot(doubled, doubled);
+}
+
+}  // namespace
+
+std::vector<std::vector<OwnHinge>> own_hinges(const Body& body) {
+    std::vector<std::vector<OwnHinge>> lists(body.count());
+    for (const Term& term : body.terms) {
+        const auto* bending = std::get_if<Bending>(&term);
+        if (!bending) continue;
+        for (const Hinge& hinge : bending->hinges) {
+            const auto& [from, to, left, right, stiffness, rest] = hinge;
+            const float square =
+                std::max(std::min(area_square(body, from, to, left), area_square(body, to, from, right)),
+                         std::numeric_limits<float>::min());
+            lists[std::size_t(from)].push_back({true, {to, left, right}, stiffness, rest, square});
+            lists[std::size_t(to)].push_back({true, {from, right, left}, stiffness, rest, square});
+            lists[std::size_t(left)].push_back({false, {from, to, right}, stiffness, rest, square});
+            lists[std::size_t(right)].push_back({false, {to, from, left}, stiffness, rest, square});
+        }
+    }
+    return lists;
 }
 
 Body without_grid(Body body) {
@@ -190,7 +236,8 @@ Body without_grid(Body body) {
         for (const Tie& tie : springs.of(i))
             if (tie.to > int(i) && tie.share > 0)
                 listed.springs.push_back({int(i), tie.to, tie.share * tie.stiffness, tie.rest});
-    body.terms = {std::move(listed)};
+    std::erase_if(body.terms, [](const Term& term) { return !std::holds_alternative<Bending>(term); });
+    body.terms.insert(body.terms.begin(), std::move(listed));
     body.at.clear();
     body.cells.clear();
     return body;

@@ -59,8 +59,27 @@ struct ListedSprings {
     bool operator==(const ListedSprings&) const = default;
 };
 
+/// Where two triangles of a sheet meet: the edge from -> to of (from, to, left) and (to, from, right), each
+/// counter-clockwise from outside. It is the same hinge with `from` and `to`, and `left` and `right`, the
+/// other way round.
+struct Hinge {
+    int from, to, left, right;
+    float stiffness;  // N m, per radian
+    float rest = 0;   // twice the sine of half the angle between its triangles' normals at rest; above 0
+                      // where they fold up towards their outside
+
+    bool operator==(const Hinge&) const = default;
+};
+
+/// Hinges that resist being bent, so that a sheet is stiff as a plate is.
+struct Bending {
+    std::vector<Hinge> hinges;
+
+    bool operator==(const Bending&) const = default;
+};
+
 /// What pulls at nodes: a kind of force with its numbers. Its equations are in solver/terms/.
-using Term = std::variant<GridSprings, ListedSprings>;
+using Term = std::variant<GridSprings, ListedSprings, Bending>;
 
 /// Nodes, and what pulls at them. Plain data; the moving state belongs to a Solver.
 /// In a grid, nodes stand in its order, x fastest, with no gaps: nodes that do not exist take no memory.
@@ -79,10 +98,11 @@ struct Body {
     std::vector<int> rings;
     std::vector<std::array<int, 8>> cells;  // filled cells: corner nodes, x fastest, then y, then z
     std::vector<std::array<int, 3>>
-        faces;               // triangles of nodes, where the body is a sheet or a net of springs
-    float spacing = 0;       // m, of the grid; elsewhere the mean length of the springs
-    float damping = 0;       // 1/s, of velocities
-    float link_damping = 0;  // s: each spring resists its stretching with this × stiffness, N s/m
+        faces;          // triangles of nodes, where the body is a sheet or a net of springs
+    float spacing = 0;  // m, of the grid; elsewhere the mean length of the springs
+    float damping = 0;  // 1/s, of velocities
+    float link_damping =
+        0;  // s: each spring resists its stretching with this × stiffness, N s/m; so do hinges
 
     std::size_t count() const { return positions.size(); }
     /// The springs of its grid; null where it has none.
@@ -114,6 +134,15 @@ struct Table {
     bool operator==(const Table&) const = default;
 };
 
+/// A hinge as one of its four nodes sees it: as an end of its edge, which it then counts from, or as the tip
+/// of a triangle, which it then counts as the left one.
+struct OwnHinge {
+    bool is_end;
+    std::array<int, 3> others;  // to, left, right for an end; from, to, right for a tip
+    float stiffness, rest;      // as of a Hinge
+    float area_square;          // m⁴, of the smaller of its triangles at rest; never quite 0
+};
+
 /// What messages call it.
 std::string name_in_errors(const Body& body);
 
@@ -123,6 +152,9 @@ void check(const Body& body);
 
 /// The springs of any body as its nodes see them; a grid's links stay in their order, and come first.
 Table table(const Body& body);
+
+/// The hinges of a body as its nodes see them: for each node all that it belongs to.
+std::vector<std::vector<OwnHinge>> own_hinges(const Body& body);
 
 /// The same body with its springs listed one by one, and no grid or cells any more.
 Body without_grid(Body body);

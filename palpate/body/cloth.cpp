@@ -38,6 +38,32 @@ struct Ring {
     bool closed = false;
 };
 
+// For each node and each neighbour that an edge of a triangle leads to, the third of its nodes: it lies to
+// the left of that edge, and is the next neighbour round the node.
+using Thirds = std::vector<std::map<int, int>>;
+
+Thirds thirds_of(const Body& sheet) {
+    Thirds thirds(sheet.count());
+    for (const auto& face : sheet.faces)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int from = face[k], to = face[(k + 1) % 3], third = face[(k + 2) % 3];
+            if (!thirds[std::size_t(from)].emplace(to, third).second)
+                throw Error(
+                    fmt::format("three faces or more meet at the edge from vertex {} to {}", from, to),
+                    "the cloth", "drop double faces, and turn all faces the same way");
+        }
+    return thirds;
+}
+
+// Calls act(from, to, left, right) for each directed edge that has a triangle on either side.
+template <class Act>
+void for_each_fold(const Thirds& thirds, Act act) {
+    for (int from = 0; from < int(thirds.size()); ++from)
+        for (const auto& [to, left] : thirds[std::size_t(from)])
+            if (const auto other = thirds[std::size_t(to)].find(from); other != thirds[std::size_t(to)].end())
+                act(from, to, left, other->second);
+}
+
 // `next`: for each neighbour the one that follows it in a triangle of the vertex.
 Ring ring_of(std::size_t vertex, const std::map<int, int>& next) {
     const Error mixed(fmt::format("vertex {} does not lie on one sheet", vertex), "the cloth",
@@ -63,21 +89,23 @@ Ring ring_of(std::size_t vertex, const std::map<int, int>& next) {
     return ring;
 }
 
-std::vector<Ring> rings_of(const Mesh& mesh) {
-    std::vector<std::map<int, int>> next(mesh.positions.size());
-    auto add = [&](unsigned vertex, unsigned a, unsigned b) {
-        if (!next[vertex].emplace(a, b).second)
-            throw Error(fmt::format("three faces or more meet at the edge from vertex {} to {}", vertex, a),
-                        "the cloth", "drop double faces, and turn all faces the same way");
-    };
-    for (uvec3 t : mesh.triangles) {
-        add(t.x, t.y, t.z);
-        add(t.y, t.z, t.x);
-        add(t.z, t.x, t.y);
-    }
+std::vector<Ring> rings_of(const Thirds& thirds) {
     std::vector<Ring> rings;
-    for (std::size_t v = 0; v < next.size(); ++v) rings.push_back(ring_of(v, next[v]));
+    for (std::size_t v = 0; v < thirds.size(); ++v) rings.push_back(ring_of(v, thirds[v]));
     return rings;
+}
+
+// m: across the triangle to the left of an edge, from the edge to its third node.
+dvec3 height(dvec3 from, dvec3 to, dvec3 left) {
+    const dvec3 along = glm::normalize(to - from);
+    return left - from - glm::dot(left - from, along) * along;
+}
+
+// The angle through which a hinge is folded up towards the outside of its triangles, by their heights.
+double fold_angle(dvec3 edge, dvec3 left, dvec3 right) {
+    const double sine = glm::dot(glm::cross(left, right), glm::normalize(edge)),
+                 cosine = -glm::dot(left, right);
+    return std::atan2(sine, cosine);
 }
 
 }  // namespace
@@ -88,6 +116,9 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings) {
                     "use fewer than 30 million, and 1 or more along each side");
     if (!(spacing > 0 && std::isfinite(spacing)))
         throw Error(fmt::format("a spacing of {} m", spacing), "the cloth", "use one above zero");
+    if (settings.bending > 0)
+        throw Error("bending of a rectangle, which bends by its flexion springs", "the cloth",
+                    "give it those, or make it of triangles");
     Body body;
     body.spacing = spacing;
     body.fan = 4;
@@ -127,7 +158,9 @@ Body cloth(const Mesh& mesh, const ClothSettings& settings) {
     check(mesh, "the surface of a cloth");
     Body body;
     body.positions = mesh.positions;
-    const std::vector<Ring> rings = rings_of(mesh);
+    for (uvec3 t : mesh.triangles) body.faces.push_back({int(t.x), int(t.y), int(t.z)});
+    const Thirds thirds = thirds_of(body);
+    const std::vector<Ring> rings = rings_of(thirds);
     // One place more than an open ring has neighbours, so that its ends do not meet in the fan.
     for (const Ring& ring : rings) body.fan = std::max(body.fan, int(ring.nodes.size()) + !ring.closed);
 
@@ -144,21 +177,14 @@ Body cloth(const Mesh& mesh, const ClothSettings& settings) {
         body.rings.resize(std::size_t(v + 1) * std::size_t(body.fan), ring.closed ? ring.nodes[0] : -1);
     }
     body.area.assign(mesh.positions.size(), 0);
-    std::map<std::pair<unsigned, unsigned>, unsigned> opposite;  // of each directed edge
     for (uvec3 t : mesh.triangles) {
         const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
         const float third = glm::length(glm::cross(b - a, c - a)) / 6;
-        for (int k = 0; k < 3; ++k) {
-            body.area[t[k]] += third;
-            opposite[{t[k], t[(k + 1) % 3]}] = t[(k + 2) % 3];
-        }
-        body.faces.push_back({int(t.x), int(t.y), int(t.z)});
+        for (int k = 0; k < 3; ++k) body.area[t[k]] += third;
     }
-    for (const auto& [edge, mine] : opposite) {
-        const auto other = opposite.find({edge.second, edge.first});
-        if (other == opposite.end() || settings.stiffness.flexion <= 0) continue;
-        if (mine < other->second) add(int(mine), int(other->second), settings.stiffness.flexion);
-    }
+    for_each_fold(thirds, [&](int, int, int left, int right) {
+        if (left < right && settings.stiffness.flexion > 0) add(left, right, settings.stiffness.flexion);
+    });
     for (std::size_t v = 0; v < body.area.size(); ++v)
         if (!(body.area[v] > 0))
             throw Error(fmt::format("the faces at vertex {} have no area, so it has no mass", v), "the cloth",
@@ -166,7 +192,27 @@ Body cloth(const Mesh& mesh, const ClothSettings& settings) {
     body.spacing = mean_rest(listed.springs);
     body.terms = {std::move(listed)};
     weigh(body, settings);
+    if (settings.bending > 0) body.terms.push_back(bending(body, settings.bending));
     return body;
+}
+
+Bending bending(const Body& sheet, float rigidity) {
+    check(sheet);
+    if (!(rigidity >= 0 && std::isfinite(rigidity)))
+        throw Error(fmt::format("a bending of {} N m", rigidity), name_in_errors(sheet), "use 0 or more");
+    Bending made;
+    for_each_fold(thirds_of(sheet), [&](int from, int to, int left, int right) {
+        if (from > to || left == right) return;  // once each; and back to back there is no way to bend
+        auto at = [&](int node) { return dvec3(sheet.positions[std::size_t(node)]); };
+        const dvec3 edge = at(to) - at(from), left_height = height(at(from), at(to), at(left)),
+                    right_height = height(at(from), at(to), at(right));
+        if (!(glm::length(left_height) > 0 && glm::length(right_height) > 0)) return;  // it has no normal
+        const double mean = 0.5 * (glm::length(left_height) + glm::length(right_height)),
+                     angle = fold_angle(edge, left_height, right_height);
+        made.hinges.push_back({from, to, left, right, float(rigidity * glm::length(edge) / mean),
+                               float(2 * std::sin(angle / 2))});
+    });
+    return made;
 }
 
 Body net(std::span<const vec3> positions, std::span<const float> masses, std::span<const Spring> springs,

@@ -10,14 +10,18 @@ namespace palpate {
 /// What a cloth is made of. Give a density or a mass.
 struct ClothSettings {
     SpringKinds stiffness = {.structural = 100, .shear = 50, .flexion = 5};  // N/m
-    float density = 0;                                                       // kg/m²; a shirt is 0.15, or
-    float mass = 0;                                                          // kg, of the whole
-    float damping = 0;                                                       // 1/s, of velocities
+    /// N m: how stiff a sheet of any triangles is in bending by the angles between them (bending() below).
+    /// Besides it flexion springs, which resist stretching too, are best 0.
+    float bending = 0;
+    float density = 0;       // kg/m²; a shirt is 0.15, or
+    float mass = 0;          // kg, of the whole
+    float damping = 0;       // 1/s, of velocities
     float link_damping = 0;  // s: a spring resists its stretching with this × its stiffness, N s/m
 };
 
 /// A rectangle of `dims` nodes in the plane z = 0, node (0, 0) at the origin, its normal along +z. 12 springs
 /// a node: 4 structural, 4 shear, 4 flexion (2012, section 3). Each node weighs by the squares around it.
+/// Throws Error if `bending` is given: flexion springs are what it bends by.
 Body cloth(ivec2 dims, float spacing, const ClothSettings& settings);
 
 /// A sheet of any triangles, open or closed: a node a vertex, a structural spring an edge, a flexion spring
@@ -25,6 +29,13 @@ Body cloth(ivec2 dims, float spacing, const ClothSettings& settings);
 /// used. Each node weighs by a third of its triangles. The mesh is welded (mesh/repair.h) and manifold:
 /// throws Error if a vertex belongs to no triangle or to several fans of them, naming the first.
 Body cloth(const Mesh& mesh, const ClothSettings& settings);
+
+/// Hinges between a body's faces, at rest as it is, whatever its shape: a plate of `rigidity` N m, which is
+/// its E t³ / 12 (1 - ν²). Each is as stiff as rigidity × length² of its edge / area of its two triangles.
+/// That is exact where triangles are equilateral (Seung and Nelson 1988), for every way to bend them, and
+/// Poisson's ratio is -1/3 there; and where squares, cut in two, are bent along their sides. Elsewhere the
+/// mesh shows: see docs/results.md. Throws Error where faces do not lie on one sheet.
+Bending bending(const Body& sheet, float rigidity);
 
 /// Any net of springs; one whose rest length is 0 is as long as its nodes are apart. `masses`: kg, one a
 /// node; 0 pins it. `faces`: triangles of its nodes, counter-clockwise from outside, for a surface to hang

@@ -35,6 +35,7 @@ class Cutting {
     }
 
     void cut_link(int a, int b) {
+        cut_.insert(std::minmax(a, b));
         if (GridSprings* grid = body_.grid()) {
             const ivec3 way = body_.at[std::size_t(b)] - body_.at[std::size_t(a)];
             for (std::size_t l = 0; l < grid->links.size(); ++l) {
@@ -56,6 +57,24 @@ class Cutting {
         GridSprings* grid = body_.grid();
         for (std::size_t l = 0; grid && l < grid->links.size(); ++l)
             for (int node : nodes) weaken(*grid, std::size_t(node), l, place);
+    }
+
+    // The hinges of triangles of which an edge was cut go last. Their nodes.
+    std::set<int> cut_hinges() {
+        std::set<int> nodes;
+        auto is_cut = [&](const Hinge& hinge) {
+            const auto& [from, to, left, right, stiffness, rest] = hinge;
+            for (const auto& [a, b] :
+                 {std::pair(from, to), {to, left}, {left, from}, {to, right}, {right, from}})
+                if (cut_.contains(std::minmax(a, b))) {
+                    nodes.insert({from, to, left, right});
+                    return true;
+                }
+            return false;
+        };
+        for (Term& term : body_.terms)
+            if (auto* bending = std::get_if<Bending>(&term)) std::erase_if(bending->hinges, is_cut);
+        return nodes;
     }
 
  private:
@@ -86,6 +105,7 @@ class Cutting {
         const ivec3 offset = grid.links[link].offset;
         grid.set_quarters(node, link, quarters);
         const int other = node_at_.at(body_.at[node] + offset);
+        if (quarters == 0 && other >= 0) cut_.insert(std::minmax(int(node), other));
         for (std::size_t l = 0; l < grid.links.size(); ++l)
             if (other >= 0 && grid.links[l].offset == -offset)
                 grid.set_quarters(std::size_t(other), l, quarters);
@@ -104,6 +124,7 @@ class Cutting {
     Body& body_;
     const GridIndex node_at_;
     GridIndex filled_;
+    std::set<std::pair<int, int>> cut_;  // between which nodes, the lower first
 };
 
 std::vector<int> count_cells(const Body& body) {
@@ -146,9 +167,15 @@ void keep_nodes(Body& body, const std::vector<int>& kept) {
         if (auto* grid = std::get_if<GridSprings>(&term)) {
             keep(grid->shares, kept);
             keep(grid->strength, kept);
+        } else if (auto* listed = std::get_if<ListedSprings>(&term)) {
+            for (Spring& s : listed->springs) s.a = number[std::size_t(s.a)], s.b = number[std::size_t(s.b)];
         } else {
-            for (Spring& s : std::get<ListedSprings>(term).springs)
-                s.a = number[std::size_t(s.a)], s.b = number[std::size_t(s.b)];
+            std::erase_if(std::get<Bending>(term).hinges, [&](Hinge& hinge) {
+                bool is_whole = true;
+                for (int* node : {&hinge.from, &hinge.to, &hinge.left, &hinge.right})
+                    is_whole = (*node = number[std::size_t(*node)]) >= 0 && is_whole;
+                return !is_whole;
+            });
         }
     for (auto& cell : body.cells)
         for (int& node : cell) node = number[std::size_t(node)];
@@ -182,6 +209,7 @@ BodyChange apply(Body& body, const Edit& edit) {
         for (int c = 0; c < int(body.cells.size()); ++c)
             if (!gone.contains(c)) change.cell_before.push_back(c);
         keep(body.cells, change.cell_before);
+        touched.merge(cutting.cut_hinges());
     }
     const std::vector<int> cells_now = count_cells(body);
     const std::vector<char> held = held_by_listed_springs(body);

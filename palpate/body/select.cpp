@@ -67,13 +67,15 @@ void strengthen(Body& body, std::span<const float> factors) {
     for (float factor : factors)
         if (!(factor >= 0 && std::isfinite(factor)))
             throw Error("a factor that is negative or not finite", name_in_errors(body), "use 0 or more");
+    auto mean = [&](int a, int b) { return 0.5f * (factors[std::size_t(a)] + factors[std::size_t(b)]); };
     for (Term& term : body.terms)
         if (auto* grid = std::get_if<GridSprings>(&term)) {
             grid->strength.resize(body.count(), 1);
             for (std::size_t i = 0; i < factors.size(); ++i) grid->strength[i] *= factors[i];
+        } else if (auto* listed = std::get_if<ListedSprings>(&term)) {
+            for (Spring& spring : listed->springs) spring.stiffness *= mean(spring.a, spring.b);
         } else {
-            for (Spring& spring : std::get<ListedSprings>(term).springs)
-                spring.stiffness *= 0.5f * (factors[std::size_t(spring.a)] + factors[std::size_t(spring.b)]);
+            for (Hinge& hinge : std::get<Bending>(term).hinges) hinge.stiffness *= mean(hinge.from, hinge.to);
         }
 }
 

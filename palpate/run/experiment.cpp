@@ -29,7 +29,7 @@ bool leaves_shapes(const Change& change) {
         return last == "friction" || last == "margin" || key.find(".plane.") != std::string::npos ||
                key.find(".sphere.") != std::string::npos;
     for (const char* one : {"youngs_modulus", "stiffness", "springs", "structural", "shear", "flexion",
-                            "density", "mass", "damping", "link_damping", "pin"})
+                            "bending", "density", "mass", "damping", "link_damping", "pin"})
         if (last == one) return key.starts_with("body.");
     return false;
 }
@@ -59,9 +59,8 @@ float stiffest(const Body& body) {
     for (const Term& term : body.terms)
         if (const auto* grid = std::get_if<GridSprings>(&term))
             for (const Link& link : grid->links) most = std::max(most, link.stiffness);
-        else
-            for (const Spring& spring : std::get<ListedSprings>(term).springs)
-                most = std::max(most, spring.stiffness);
+        else if (const auto* listed = std::get_if<ListedSprings>(&term))
+            for (const Spring& spring : listed->springs) most = std::max(most, spring.stiffness);
     return most;
 }
 

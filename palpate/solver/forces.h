@@ -19,7 +19,7 @@ class Forces {
     void at(std::span<const dvec3> positions, std::span<dvec3> forces) const;
 
     /// The stiffness matrix about these positions times a displacement, N: minus the derivative of the
-    /// forces, but for what would make it negative (terms/springs.inl).
+    /// forces, but for what would make it negative (terms/).
     void stiffness_times(std::span<const dvec3> positions, std::span<const dvec3> displacement,
                          std::span<dvec3> forces) const;
 
@@ -31,7 +31,7 @@ class Forces {
     std::unique_ptr<Inside> in_;
 };
 
-/// What motion and stretched springs hold.
+/// What motion and the body's terms hold.
 struct Energy {
     double kinetic = 0;  // J
     double elastic = 0;  // J, in the body's terms

@@ -1,13 +1,13 @@
-// node.inl: the physics of one node, written once for every machine; what its springs do is in terms/springs.inl, what it
-// may not enter in obstacles.inl.
+// node.inl: the physics of one node, written once for every machine; what a body's terms do is in terms/, a file for each
+// law, what a node may not enter in obstacles.inl.
 //
-// The words are GLSL's; C++ and CUDA bring the same ones (dot, cross, max, min, inversesqrt). In C++ and CUDA this
+// The words are GLSL's; C++ and CUDA bring the same ones (dot, cross, max, min, inversesqrt, asin). In C++ and CUDA this
 // file is included inside the backend's own struct, in GLSL at global scope, and finds there:
 //   FN, ASIDE, UNROLL  what stands before a function, before one that few bodies need, and before a loop over links
 //   Real, Real3        a number, a vector: of one node, or of as many nodes as a SIMD register holds
 //   select(c, a, b)    a where c holds, b elsewhere
 //   any_node(c)        whether c holds for any of the nodes at hand
-//   LINKS              how many links a node has
+//   LINKS, HINGES      how many links and hinges a node has
 //   pass               the Pass: what all nodes share
 //   toward(p, l)       from p to this node's neighbour along link l, m
 //   passing(v, l)      from v to that neighbour's velocity, m/s
@@ -15,6 +15,9 @@
 //   share(l)           how much of link l there is: 0 none, 1 all
 //   stiffness(l), tension(l)   of a whole link, N/m; stiffness x rest length, N
 //   longest(l)         ten times its rest length, squared, m^2
+//   hinge_end(h)       whether this node is an end of the edge of its hinge h; else it is the tip of a triangle
+//   hinge_toward(p, h, n), hinge_passing(v, h, n)   as toward and passing, for the three others: OwnHinge says which
+//   hinge_stiffness(h), hinge_rest(h), hinge_area_square(h)   as an OwnHinge says
 //   origin()           what this node's position counts from: the world's, or its own place at rest, m
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
 //   tip(i)             the RoundTip i
@@ -80,6 +83,33 @@ ASIDE Real3 outward(Real3 position) {
 }
 
 #include "palpate/solver/terms/springs.inl"
+#include "palpate/solver/terms/bending.inl"
+
+// All terms together. A law that joins them is one more file, and one more line in each of these.
+
+FN Real3 elastic_force(Real3 position) {
+    Real3 force = spring_force(position);
+    if (HINGES > 0) force += bending_force(position);
+    return force;
+}
+
+FN Real3 elastic_damping(Node node) {
+    Real3 force = spring_damping(node);
+    if (HINGES > 0) force -= Real(pass.link_damping) * bending_stiffness_times(node);
+    return force;
+}
+
+ASIDE Real3 elastic_stiffness_times(Node node) {
+    Real3 force = spring_stiffness_times(node);
+    if (HINGES > 0) force += bending_stiffness_times(node);
+    return force;
+}
+
+ASIDE Real elastic_energy(Real3 position) {
+    Real energy = spring_energy(position);
+    if (HINGES > 0) energy += bending_energy(position);
+    return energy;
+}
 
 // A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
 FN Real3 tip_force(Real3 position, int i) {
@@ -113,8 +143,8 @@ FN Real3 tool_force(Real3 position) {
 }
 
 FN Real3 acceleration(Node node) {
-    Real3 force = spring_force(node.position);
-    if (LINK_DAMPING) force += spring_damping(node);
+    Real3 force = elastic_force(node.position);
+    if (LINK_DAMPING) force += elastic_damping(node);
     if (TIPS + PUSHES > 0) force += tool_force(node.position);
     if (WIND) force += wind_force(node);
     return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;

@@ -57,6 +57,12 @@ Body without_stiff_springs(Body body) {
     return body;
 }
 
+// The same body with no hinges.
+Body without_bending(Body body) {
+    std::erase_if(body.terms, [](const Term& term) { return std::holds_alternative<Bending>(term); });
+    return body;
+}
+
 struct Candidate {
     std::string remedy;
     std::function<void(Causes&)> leave_out;
@@ -64,6 +70,9 @@ struct Candidate {
 
 std::vector<Candidate> candidates(const Body& body, const Causes& causes) {
     std::vector<Candidate> all;
+    auto at_most = [](double frequency) {
+        return [frequency](Causes& c) { c.frequency = std::min(c.frequency, frequency); };
+    };
     if (body.link_damping > 0)
         all.push_back({fmt::format("lower link_damping = {:.3g} s", body.link_damping),
                        [](Causes& c) { c.link_damping = 0; }});
@@ -81,13 +90,11 @@ std::vector<Candidate> candidates(const Body& body, const Causes& causes) {
             {fmt::format("make its nodes weigh more alike ({} of {} weigh less than a quarter of the "
                          "median; of a sheet, weld or simplify the surface)",
                          light, body.count()),
-             [frequency = highest_frequency(even)](Causes& c) {
-                 c.frequency = std::min(c.frequency, frequency);
-             }});
+             at_most(highest_frequency(even))});
+    if (const Body limp = without_bending(body); limp.terms.size() < body.terms.size())
+        all.push_back({"lower its bending or make its triangles larger", at_most(highest_frequency(limp))});
     all.push_back({"make its stiffest springs or regions softer",
-                   [frequency = highest_frequency(without_stiff_springs(body))](Causes& c) {
-                       c.frequency = std::min(c.frequency, frequency);
-                   }});
+                   at_most(highest_frequency(without_stiff_springs(body)))});
     return all;
 }
 

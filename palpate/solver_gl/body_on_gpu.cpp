@@ -70,6 +70,28 @@ std::vector<uvec4> all_traits(const Body& body, const Placement& placement) {
     return traits;
 }
 
+int most_hinges(const std::vector<std::vector<OwnHinge>>& hinges) {
+    std::size_t most = 0;
+    for (const auto& own : hinges) most = std::max(most, own.size());
+    return int(most);
+}
+
+// Behind the springs: a texture unit of their own would be the seventeenth of a stage, and OpenGL promises
+// sixteen.
+void add_hinges(std::vector<vec4>& ties, const std::vector<std::vector<OwnHinge>>& hinges) {
+    for (int h = 0; h < most_hinges(hinges); ++h)
+        for (const bool others : {true, false})
+            for (std::size_t i = 0; i < hinges.size(); ++i) {
+                const int self = int(i);
+                const bool is_there = std::size_t(h) < hinges[i].size();
+                const OwnHinge own =
+                    is_there ? hinges[i][std::size_t(h)] : OwnHinge{false, {self, self, self}, 0, 0, 1};
+                auto at = [&](std::size_t n) { return std::bit_cast<float>(own.others[n]); };
+                ties.push_back(others ? vec4(at(0), at(1), at(2), own.is_end ? 1 : 0)
+                                      : vec4(own.stiffness, own.rest, own.area_square, 0));
+            }
+}
+
 // Springs written out, those of each link together, so that neighbouring nodes read side by side.
 gl::Field ties_of(const Body& body, const Placement& placement) {
     if (placement.grid) {
@@ -86,6 +108,7 @@ gl::Field ties_of(const Body& body, const Placement& placement) {
             const int to = tie.to < 0 ? int(i) : tie.to;  // where there is none it pulls at nothing
             ties.emplace_back(std::bit_cast<float>(to), tie.share, tie.stiffness, tie.rest);
         }
+    add_hinges(ties, own_hinges(body));
     return field(GL_RGBA32F, ties);
 }
 
@@ -154,6 +177,7 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     const GridSprings* stencil = placement.grid ? body.grid() : nullptr;
     const Pass pass = make_pass(body, simulation);
     define(true, fmt::format("LINKS {}", stencil ? pass.links : table(body).width));
+    define(true, fmt::format("HINGES {}", stencil ? 0 : most_hinges(own_hinges(body))));
     define(!stencil, "TABLE");
     define(stencil && stencil->in_quarters(), "QUARTERS");
     define(stencil && !stencil->strength.empty(), "STRENGTH");

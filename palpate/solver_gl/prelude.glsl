@@ -1,6 +1,7 @@
 // prelude.glsl: the words of node.inl in GLSL, and how fields are looked up. Before it stands a line for each of these that
 // holds for the body:
 //   LINKS n       how many links a node has
+//   HINGES n      and how many hinges; only where springs are written out
 //   TABLE         springs are written out; else a grid implies them:
 //   QUARTERS      with shares of three bits, ten in a word; else one bit each
 //   STRENGTH      with a factor on stiffness for each node

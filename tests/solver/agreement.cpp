@@ -63,6 +63,16 @@ Body stitched(Body body) {
     return body;
 }
 
+// Hinges between most of its faces, one of them softer and one that rests bent.
+Body hinged(Body body, float rigidity) {
+    Bending hinges = bending(body, rigidity);
+    hinges.hinges.resize(hinges.hinges.size() * 4 / 5);
+    hinges.hinges.front().stiffness *= 0.3f;
+    hinges.hinges.back().rest = -0.4f;
+    body.terms.push_back(std::move(hinges));
+    return body;
+}
+
 Body turned(Body body) {
     const mat3 turn = mat3(glm::rotate(mat4(1), 0.7f, glm::normalize(vec3(1, 2, 3))));
     for (vec3& p : body.positions) p = turn * p + vec3(0.02f, 0.05f, -0.03f);
@@ -86,6 +96,10 @@ std::vector<NamedBody> odd_bodies() {
     Body net_body = net(corners, std::vector<float>{0.01f, 0.01f, 0.01f, 0.02f, 0.0f}, edges);
     net_body.damping = 20;
     Mesh bowl = ellipsoid({0.04f, 0.04f, 0.02f}, 7);
+    ClothSettings stiff_linen = linen;
+    stiff_linen.bending = 2e-4f;
+    stiff_linen.stiffness.flexion = 0;
+    const Body bending_bowl = cloth(bowl, stiff_linen);
     return {
         {"box", lattice({9, 7, 8}, 0.01f, tissue)},
         {"box with whole links", with_whole_links(lattice({8, 9, 5}, 0.01f, tissue))},
@@ -107,7 +121,10 @@ std::vector<NamedBody> odd_bodies() {
         {"turned cloth", turned(cloth({12, 11}, 0.01f, linen))},
         {"battered cloth", battered(cloth({11, 13}, 0.01f, linen), 6)},
         {"cloth of triangles", cloth(bowl, linen)},
-        {"net", net_body}};
+        {"net", net_body},
+        {"sheet that bends", bending_bowl},
+        {"battered sheet that bends", battered(bending_bowl, 9)},
+        {"cloth with hinges", hinged(cloth({12, 7}, 0.01f, linen), 2e-4f)}};
 }
 
 Acting everything(const Body& body) {

@@ -21,6 +21,12 @@ Body organ() {
     return body;
 }
 
+Body stiff_sheet() {
+    Body body = cloth({9, 8}, 0.01f, linen);
+    body.terms.push_back(bending(body, 2e-4f));
+    return body;
+}
+
 // Springs near one another, and with `cells` some cells.
 Edit edit_of(const Body& body, bool with_cells, unsigned seed) {
     std::mt19937 random(seed);
@@ -77,6 +83,31 @@ TEST(Edits, HoldOnBodiesOfAnyKind) {
     }
 }
 
+// A hinge goes with any edge of its two triangles, and with its nodes; the flexion between its tips is no
+// edge.
+TEST(Edits, HingesGoWithTheirTriangles) {
+    Body body = cloth({3, 2}, 0.01f, linen);
+    body.terms.push_back(bending(body, 1));
+    auto hinges = [&] { return std::get<Bending>(body.terms[1]).hinges; };
+    ASSERT_EQ(hinges().size(), 3u);  // two diagonals, and the edge between the squares from node 1 to 4
+    apply(body, {.links = {{0, 5}, {3, 1}}, .cells = {}});
+    EXPECT_EQ(hinges().size(), 3u);
+    const BodyChange change = apply(body, {.links = {{0, 1}}, .cells = {}});
+    ASSERT_EQ(hinges().size(), 1u);
+    EXPECT_EQ(hinges()[0].from, 1);
+    EXPECT_EQ(hinges()[0].to, 5);
+    EXPECT_EQ(change.nodes, (std::vector{0, 1, 3, 4, 5}));
+
+    // On a box, whose cells take nodes with them.
+    body = lattice({3, 2, 2}, 0.01f, tissue);
+    body.terms.push_back(Bending{{{0, 1, 3, 6, 1}, {1, 2, 4, 7, 1}, {4, 1, 5, 3, 1}}});
+    ASSERT_EQ(body.cells.size(), 2u);
+    apply(body, {.links = {}, .cells = {0}});
+    ASSERT_EQ(hinges().size(), 1u);
+    EXPECT_EQ(body.positions[std::size_t(hinges()[0].to)], vec3(0.02f, 0, 0));
+    check(body);
+}
+
 TEST(Edits, WhatIsNotThereIsRefused) {
     Body body = organ();
     const Body before = body;
@@ -121,7 +152,8 @@ INSTANTIATE_TEST_SUITE_P(Every, Changes,
 
 TEST_P(Changes, KeepTheStateToTheBit) {
     for (const bool with_cells : {false, true})
-        for (const Body& body : {organ(), lattice({6, 5, 7}, 0.01f, tissue), without_grid(organ())}) {
+        for (const Body& body :
+             {organ(), lattice({6, 5, 7}, 0.01f, tissue), without_grid(organ()), stiff_sheet()}) {
             const Simulation how{.backend = GetParam(), .step = 2e-4, .force = true};
             auto swinging = make_solver(body, how, context());
             swinging->step(0.01);

@@ -43,6 +43,8 @@ std::vector<std::pair<std::string, Body>> bodies() {
         for (int b = 0; b < a; ++b) edges.push_back({a, b, 20});
     Body net_body = net(tetrahedron, std::vector<float>{0.01f, 0.01f, 0.01f, 0.02f}, edges);
     net_body.damping = 40;
+    ClothSettings stiff_linen = linen;
+    stiff_linen.bending = 1e-3f;
     Body nodule = lattice({4, 4, 4}, 0.01f, tissue);
     std::vector<float> factors(nodule.count(), 1);
     for (int node : nodes_near(nodule, vec3(0.015f), 0.011f)) factors[std::size_t(node)] = 5;
@@ -55,6 +57,7 @@ std::vector<std::pair<std::string, Body>> bodies() {
         {"volume of 2012", lattice({4, 4, 3}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.05f, .damping = 40})},
         {"cloth", cloth({7, 8}, 0.01f, linen)},
         {"cloth of triangles", cloth(disc(), linen)},
+        {"cloth of triangles that bends", cloth(disc(), stiff_linen)},
         {"net", net_body},
         {"single node", lattice({1, 1, 1}, 0.01f, tissue)},
         {"empty", net({}, {}, {})}};

@@ -123,6 +123,15 @@ TEST(Refusal, OfBodiesThatDoNotHold) {
     refused("a spring to a node", written, [&](Body& b) { listed(b)[0].a = 60; });
     refused("a spring to a node", written, [&](Body& b) { listed(b)[0].b = -1; });
     refused("a spring to a node", written, [&](Body& b) { listed(b)[0].rest = none; });
+    Body bending_sheet = sheet;
+    bending_sheet.terms.push_back(bending(sheet, 1));
+    auto hinges = [](Body& b) -> std::vector<Hinge>& { return std::get<Bending>(b.terms[1]).hinges; };
+    refused("a hinge whose", bending_sheet, [&](Body& b) { hinges(b)[0].from = 20; });
+    refused("a hinge whose", bending_sheet, [&](Body& b) { hinges(b)[0].right = -1; });
+    refused("a hinge whose", bending_sheet, [&](Body& b) { hinges(b)[0].left = hinges(b)[0].to; });
+    refused("a hinge whose", bending_sheet, [&](Body& b) { hinges(b)[0].stiffness = none; });
+    refused("half a turn", bending_sheet, [&](Body& b) { hinges(b)[0].rest = none; });
+    refused("half a turn", bending_sheet, [&](Body& b) { hinges(b)[0].rest = -2.1f; });
     refused("rings", without_grid(sheet), [](Body& b) { b.rings.pop_back(); });
     refused("a ring", without_grid(sheet), [](Body& b) { b.rings[3] = 20; });
     refused("cells without a grid", written, [&](Body& b) { b.cells = sound.cells; });

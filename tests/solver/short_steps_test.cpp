@@ -22,8 +22,9 @@ std::string refusal(const Body& body, const Simulation& simulation = {}) {
 const char* const material = "use a softer material";
 
 void expect_only(const std::string& said, const std::string& words) {
-    for (const char* one : {"link_damping", "lower damping", "that press", "that drag", "weigh more alike",
-                            "stiffest springs", material, "choose verlet", "ask for longer steps"})
+    for (const char* one :
+         {"link_damping", "lower damping", "that press", "that drag", "weigh more alike", "stiffest springs",
+          "lower its bending", material, "choose verlet", "ask for longer steps"})
         EXPECT_EQ(words.find(one) != words.npos, said.find(one) != said.npos) << one << ": " << said;
 }
 
@@ -73,6 +74,13 @@ TEST(ShortSteps, AHardPart) {
     for (int node : nodes_near(body, vec3(0.035f), 0.012f)) factors[std::size_t(node)] = 1e6f;
     strengthen(body, factors);
     expect_only(refusal(body), "stiffest springs");
+}
+
+TEST(ShortSteps, Bending) {
+    Body body = cloth({11, 11}, 0.02f, light());
+    EXPECT_EQ(refusal(body), "");
+    body.terms.push_back(bending(body, 100));
+    expect_only(refusal(body), "lower its bending");
 }
 
 TEST(ShortSteps, TheMaterialItselfWhereNothingElseIs) {

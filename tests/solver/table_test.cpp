@@ -103,6 +103,11 @@ Body parasol(int ribs) {
     return cloth(mesh, linen);
 }
 
+Body hinged(Body body) {
+    body.terms.push_back(bending(body, 2e-4f));
+    return body;
+}
+
 // Some springs are missing: gaps in the rings around nodes.
 Body torn_sheet(Body body, unsigned seed) {
     std::mt19937 random(seed);
@@ -134,6 +139,10 @@ std::vector<NamedBody> tables() {
             {"a torn sheet", torn_sheet(sheet({19, 23}, 4), 4)},
             {"a parasol", parasol(90)},
             {"a closed sheet", cloth(bowl, linen)},
+            {"a hinge", hinged(sheet({2, 2}, 1))},
+            {"a strip of hinges", hinged(sheet({3, 17}, 2))},
+            {"a torn sheet of hinges", hinged(torn_sheet(sheet({19, 23}, 4), 4))},
+            {"a parasol of hinges", hinged(parasol(90))},
             {"an organ", without_grid(organ)},
             {"a box", without_grid(lattice({9, 7, 8}, 0.01f, tissue))}};
 }

@@ -202,8 +202,11 @@ TEST(Region, AHardHalfStretchesLess) {
 
 TEST(Region, OfATableToo) {
     const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, {{0, 1, 2}, {0, 2, 3}}};
-    Body body = cloth(square, {.stiffness = {.structural = 10}, .density = 1});
+    Body body = cloth(square, {.stiffness = {.structural = 10}, .bending = 1, .density = 1});
+    const auto hinge = [&] { return std::get<Bending>(body.terms[1]).hinges.at(0); };
+    const float whole = hinge().stiffness;
     strengthen(body, std::vector<float>{3, 5, 1, 1});
+    EXPECT_EQ(hinge().stiffness, 2 * whole);  // the mean of its edge's ends
     const Table springs = table(body);
     for (const Tie& tie : springs.of(0))
         if (tie.stiffness > 0)
@@ -244,6 +247,7 @@ TEST(Net, RefusesWhatNamesNoNode) {
 }
 
 TEST(Cloth, RefusesWhatIsNoSheet) {
+    EXPECT_THROW(cloth({3, 3}, 0.01f, {.bending = 1, .density = 1}), Error);  // of no triangles
     const ClothSettings settings{.density = 1};
     const std::vector<vec3> five = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {-1, 0, 0}};
     EXPECT_THROW(cloth(Mesh{five, {}, {{0, 1, 2}}}, settings), Error);                        // lone vertices

@@ -44,7 +44,7 @@ struct QuietPass : Pass {
     static bool calm(const Pass& p) { return p.link_damping == 0 && p.wind.w == 0; }
 };
 
-// What the physics asks of a node whatever its springs.
+// What the physics asks of a node whatever its springs. Only bodies whose springs are in a table have hinges.
 template <class AnyPass>
 struct Eyes {
     using Real = Pack;
@@ -55,6 +55,32 @@ struct Eyes {
     const Sweep& sweep;
     const Fields& at;
     std::ptrdiff_t id;  // slot of the first of the nodes
+
+    // As Hinges says.
+    struct HingeRecord {
+        std::uint32_t to[3][HWY_LANES(float)];
+        float x[3][HWY_LANES(float)], y[3][HWY_LANES(float)], z[3][HWY_LANES(float)];
+        float stiffness[HWY_LANES(float)], rest[HWY_LANES(float)], area_square[HWY_LANES(float)];
+        float is_end[HWY_LANES(float)];
+    };
+    FN const Slice& hinges() const { return body.hinges.slices[std::size_t(id) / lanes()]; }
+    FN const HingeRecord& hinge(int h) const {
+        return reinterpret_cast<const HingeRecord*>(body.hinges.records)[hinges().first + h];
+    }
+    FN Mask hinge_end(int h) const { return load(hinge(h).is_end) > 0.0f; }
+    FN Pack3 hinge_toward(Pack3 p, int h, int n) const {
+        const HingeRecord& record = hinge(h);
+        return of_nodes(at.places, record.to[n]) - p + load(record.x[n], record.y[n], record.z[n], 0);
+    }
+    FN Pack3 hinge_passing(Pack3 v, int h, int n) const { return of_nodes(at.speeds, hinge(h).to[n]) - v; }
+    FN Pack hinge_stiffness(int h) const { return load(hinge(h).stiffness); }
+    FN Pack hinge_rest(int h) const { return load(hinge(h).rest); }
+    FN Pack hinge_area_square(int h) const { return load(hinge(h).area_square); }
+
+    // Four floats a node, of which each lane takes those of its own.
+    FN static Pack3 of_nodes(const float* fours, const std::uint32_t* to) {
+        return load_each([&](std::size_t lane) { return fours + to[lane]; });
+    }
 
     FN Pack3 origin() const { return load(body.rest_x, body.rest_y, body.rest_z, id); }
     FN Pack area() const { return load(body.area + id); }
@@ -105,10 +131,12 @@ using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
 using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
 // The members of a base that depends on a template must be named.
-#define USE_EYES(P)                                                                                \
-    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin, \
-        Eyes<P>::area, Eyes<P>::cover, Eyes<P>::tip, Eyes<P>::push, Eyes<P>::push_target,          \
-        Eyes<P>::push_stiffness, Eyes<P>::corner, Eyes<P>::distance_at, Eyes<P>::uphill_at;        \
+#define USE_EYES(P)                                                                                          \
+    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin,           \
+        Eyes<P>::area, Eyes<P>::cover, Eyes<P>::tip, Eyes<P>::push, Eyes<P>::push_target,                    \
+        Eyes<P>::push_stiffness, Eyes<P>::corner, Eyes<P>::distance_at, Eyes<P>::uphill_at, Eyes<P>::hinges, \
+        Eyes<P>::hinge_end, Eyes<P>::hinge_toward, Eyes<P>::hinge_passing, Eyes<P>::hinge_stiffness,         \
+        Eyes<P>::hinge_rest, Eyes<P>::hinge_area_square, Eyes<P>::of_nodes;                                  \
     using typename Eyes<P>::Real, typename Eyes<P>::Real3;
 
 // Nodes of a grid: their neighbours along a link are as far away for all of them.
@@ -211,6 +239,7 @@ struct GridNode : Eyes<AnyPass> {
     }
 
 #define LINKS Links::count
+#define HINGES 0
 #if HWY_TARGET == HWY_SCALAR  // for processors from before 2010: loops take the compiler a third of the time
 #define UNROLL
 #else
@@ -220,6 +249,7 @@ struct GridNode : Eyes<AnyPass> {
 #include "palpate/solver/node.inl"
 #undef OWN_PULL
 #undef UNROLL
+#undef HINGES
 #undef LINKS
 };
 
@@ -254,16 +284,11 @@ struct TableNode : Eyes<AnyPass> {
     FN const Whole& whole(int l) const {
         return reinterpret_cast<const Whole*>(body.ties.whole)[slice().first + l];
     }
-    FN Pack3 of_neighbours(const float* fours, int l) const {
-        const std::uint32_t* to = pulling(l).to;
-        return load_each([&](std::size_t lane) { return fours + to[lane]; });
-    }
-
     FN Pack3 toward(Pack3 p, int l) const {
         const Pulling& tie = pulling(l);
-        return of_neighbours(at.places, l) - p + load(tie.x, tie.y, tie.z, 0);
+        return of_nodes(at.places, tie.to) - p + load(tie.x, tie.y, tie.z, 0);
     }
-    FN Pack3 passing(Pack3 v, int l) const { return of_neighbours(at.speeds, l) - v; }
+    FN Pack3 passing(Pack3 v, int l) const { return of_nodes(at.speeds, pulling(l).to) - v; }
     FN Pack share(int l) const { return load(whole(l).share); }
     FN Pack neighbour(int) const { return 1.0f; }  // where there is none it is the node itself
     FN Pack stiffness(int l) const { return load(whole(l).stiffness); }
@@ -285,12 +310,14 @@ struct TableNode : Eyes<AnyPass> {
 #undef FAN
 #define FAN slice().fan
 #define LINKS slice().count
+#define HINGES hinges().count
 #define UNROLL
 #define OWN_PULL
 #include "palpate/solver/node.inl"
 #include "palpate/solver/obstacles.inl"
 #undef OWN_PULL
 #undef UNROLL
+#undef HINGES
 #undef LINKS
 #undef FAN
 };

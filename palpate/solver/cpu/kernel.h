@@ -48,6 +48,14 @@ struct Ties {
     const float* whole;  // share; stiffness of a whole one, N/m; longest, m²
 };
 
+/// Hinges written out in the same way, with no fan. A record says where the three others lie in
+/// Fields::places; x of the ways there at rest, then y, then z, m; stiffness, rest and square of an area, as
+/// of an OwnHinge; and 1 for an end of its edge, 0 for the tip of a triangle.
+struct Hinges {
+    const Slice* slices;
+    const std::uint32_t* records;
+};
+
 /// A body as it lies in memory: all that stays the same.
 struct Laid {
     Springs springs;
@@ -61,6 +69,7 @@ struct Laid {
     const std::uint32_t* words[2];          // a grid's shares, one bit a link, or three of ten links each
     const float* half_strength;             // half of each node's factor on stiffness; null: 1
     Ties ties;                              // a table's
+    Hinges hinges;                          // a table's
     const float* inverse_mass;              // 1/kg
     const float *rest_x, *rest_y, *rest_z;  // m
     const float *area, *cover;              // m², m

@@ -107,8 +107,10 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
     std::copy(springs.second.begin(), springs.second.end(), view_.along.begin());
     if (view_.springs == Springs::table) {
         ties_.emplace(body, layout_, lanes);
-        bytes_ += ties_->bytes();
+        hinges_.emplace(body, layout_, lanes);
+        bytes_ += ties_->bytes() + hinges_->bytes();
         view_.ties = ties_->view();
+        view_.hinges = hinges_->view();
     } else {
         lay_grid(body);
     }

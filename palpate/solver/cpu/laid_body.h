@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/solver/cpu/hinges.h"
 #include "palpate/solver/cpu/ties.h"
 
 #include <optional>
@@ -41,6 +42,7 @@ class LaidBody {
     std::vector<Array<float>> floats_;
     std::vector<Array<std::uint32_t>> words_;
     std::optional<LaidTies> ties_;
+    std::optional<LaidHinges> hinges_;
     bool damped_;                        // along its springs: neighbours look at velocities too
     std::vector<Bounds> rest_bounds_;    // of blocks
     std::vector<float> furthest_cover_;  // of blocks

@@ -36,7 +36,7 @@ void Forces::at(std::span<const dvec3> positions, std::span<dvec3> forces) const
     in_->require(forces.size());
     const NodeStates<double> states = in_->states(positions, {});
     for (std::size_t i = 0; i < forces.size(); ++i)
-        forces[i] = reference::see(in_->around, in_->pass, states, i).spring_force(positions[i]);
+        forces[i] = reference::see(in_->around, in_->pass, states, i).elastic_force(positions[i]);
 }
 
 void Forces::stiffness_times(std::span<const dvec3> positions, std::span<const dvec3> displacement,
@@ -46,14 +46,14 @@ void Forces::stiffness_times(std::span<const dvec3> positions, std::span<const d
     const NodeStates<double> states = in_->states(positions, displacement);
     for (std::size_t i = 0; i < forces.size(); ++i)
         forces[i] = reference::see(in_->around, in_->pass, states, i)
-                        .spring_stiffness_times(reference::load(in_->around, states, i));
+                        .elastic_stiffness_times(reference::load(in_->around, states, i));
 }
 
 double Forces::energy(std::span<const dvec3> positions) const {
     const NodeStates<double> states = in_->states(positions, {});
     double sum = 0;
     for (std::size_t i = 0; i < positions.size(); ++i)
-        sum += reference::see(in_->around, in_->pass, states, i).spring_energy(positions[i]);
+        sum += reference::see(in_->around, in_->pass, states, i).elastic_energy(positions[i]);
     return sum;
 }
 

@@ -13,13 +13,15 @@ namespace palpate::reference {
 struct Surroundings {
     const Body& body;
     Table springs;  // where there is none its end is the node itself, and it pulls at nothing
+    std::vector<std::vector<OwnHinge>> hinges;      // of each node
     std::vector<vec3> corners = {};                 // of polygons
     std::vector<const DistanceField*> fields = {};  // of closed meshes
     std::span<const NodePush> pushes = {};          // one a node,
     std::vector<int> push_of = {};                  // and the number of each node's, or -1
 
-    explicit Surroundings(const Body& of) : body(of) { lay_springs(); }
-    void lay_springs() {
+    explicit Surroundings(const Body& of) : body(of) { lay_terms(); }
+    void lay_terms() {
+        hinges = own_hinges(body);
         springs = table(body);
         for (std::size_t t = 0; t < springs.ties.size(); ++t)
             if (int& to = springs.ties[t].to; to < 0) to = int(t) / springs.width;
@@ -45,7 +47,8 @@ struct SeeingNode {
     const Pass& pass;
     const NodeStates<Real>& now;
     int id;
-    const Tie* ties;  // this node's springs
+    const Tie* ties;                   // this node's springs,
+    std::span<const OwnHinge> hinges;  // and hinges
     Real outside_area, outside_cover;
     std::span<const RoundTip> tips;
 
@@ -56,6 +59,15 @@ struct SeeingNode {
     Real stiffness(int l) const { return ties[l].stiffness; }
     Real tension(int l) const { return Real(ties[l].stiffness) * Real(ties[l].rest); }
     Real longest(int l) const { return torn_at(ties[l].rest, world.body); }
+    bool hinge_end(int h) const { return hinges[std::size_t(h)].is_end; }
+    Real3 hinge_toward(Real3 p, int h, int n) const { return now.positions[other(h, n)] - p; }
+    Real3 hinge_passing(Real3 v, int h, int n) const { return now.velocities[other(h, n)] - v; }
+    std::size_t other(int h, int n) const {
+        return std::size_t(hinges[std::size_t(h)].others[std::size_t(n)]);
+    }
+    Real hinge_stiffness(int h) const { return hinges[std::size_t(h)].stiffness; }
+    Real hinge_rest(int h) const { return hinges[std::size_t(h)].rest; }
+    Real hinge_area_square(int h) const { return hinges[std::size_t(h)].area_square; }
     Real3 origin() const { return Real3(0); }
     Real area() const { return outside_area; }
     Real cover() const { return outside_cover; }
@@ -74,6 +86,7 @@ struct SeeingNode {
     static Real max(Real a, Real b) { return a > b ? a : b; }
     static Real min(Real a, Real b) { return a < b ? a : b; }
     static Real inversesqrt(Real a) { return 1 / std::sqrt(a); }
+    static Real asin(Real a) { return std::asin(a); }
     static bool any_node(bool c) { return c; }
     static Real select(bool c, Real a, Real b) { return c ? a : b; }
     static Real3 select(bool c, Real3 a, Real3 b) { return c ? a : b; }
@@ -82,8 +95,10 @@ struct SeeingNode {
 #define ASIDE
 #define UNROLL
 #define LINKS world.springs.width
+#define HINGES int(hinges.size())
 #include "palpate/solver/node.inl"
 #include "palpate/solver/obstacles.inl"
+#undef HINGES
 #undef LINKS
 #undef UNROLL
 #undef ASIDE
@@ -99,6 +114,7 @@ SeeingNode<Real> see(const Surroundings& all, const Pass& pass, const NodeStates
             now,
             int(i),
             all.springs.ties.data() + i * std::size_t(all.springs.width),
+            all.hinges[i],
             Real(all.body.area[i]),
             Real(all.body.cover[i]),
             tips};

@@ -23,7 +23,7 @@ class Reference final : public Machine {
     }
 
     bool change(std::span<const int>) override {
-        around_.lay_springs();
+        around_.lay_terms();
         return true;
     }
 
@@ -96,6 +96,7 @@ class Reference final : public Machine {
 
     std::size_t memory() const override {
         std::size_t bytes = around_.springs.ties.size() * sizeof(Tie);
+        for (const auto& hinges : around_.hinges) bytes += hinges.size() * sizeof(OwnHinge);
         for (const NodeStates<Real>& state : states_) bytes += 2 * state.positions.size() * sizeof(Real3);
         return bytes;
     }
