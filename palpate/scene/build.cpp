@@ -181,6 +181,8 @@ void add_notes(const BodyRecipe& recipe, const Model& model, Enclosed filled,
 
 ClothSettings cloth_settings(const BodyRecipe& recipe) {
     ClothSettings settings;
+    settings.bending = recipe.bending;
+    if (recipe.bending > 0) settings.stiffness.flexion = 0;
     if (recipe.springs) settings.stiffness = *recipe.springs;
     settings.density = recipe.material.density;
     settings.mass = recipe.material.mass;
@@ -286,6 +288,7 @@ BodyRecipe without_body(BodyRecipe recipe) {
     recipe.nodes = plain.nodes;
     recipe.spacing = plain.spacing;
     recipe.springs = plain.springs;
+    recipe.bending = plain.bending;
     return recipe;
 }
 

@@ -78,6 +78,8 @@ void check_springs(const BodyRecipe& body, const Require& require) {
         require.one_of({"youngs_modulus", "stiffness"},
                        "give it one: brain has about 1e4 Pa, or say the N/m of each spring");
     }
+    require("bending", body.sheet || !require.has("bending"), "bending of what is no sheet of triangles",
+            "give cloth flexion springs, or use sheet = true with a surface");
     if (body.springs)
         require("springs", body.springs->structural > 0, "springs without structural ones",
                 "write springs = { structural = 100, shear = 50, flexion = 5 }");

@@ -131,6 +131,7 @@ void read_material(Reader& read, BodyRecipe& body) {
     read("youngs_modulus", body.material.youngs_modulus, modulus);
     read("stiffness", body.material.stiffness, stiffness);
     read.table("springs", [&](Reader& inside) { read_fields(inside, body.springs.emplace()); });
+    read("bending", body.bending, zero_or_more("N·m", "cotton has about 1e-5 N·m").usual(1e-9, 10));
     read("density", body.material.density,
          body.is_cloth() ? above_zero("kg/m²", "a shirt has about 0.15 kg/m²").usual(1e-3, 100)
                          : above_zero("kg/m³", "water has 1000 kg/m³").usual(5, 3e4));

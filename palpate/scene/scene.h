@@ -102,6 +102,7 @@ struct BodyRecipe {
         cage;           // instead: a plain box of so many nodes around the surface; a last 1 is a sheet
     Material material;  // its fields are keys of the body itself; of cloth, density is in kg/m²
     std::optional<SpringKinds> springs;  // of cloth, or of the volume of 2012 with dims
+    float bending = 0;                   // N m, of a sheet (ClothSettings)
     Choice pin;                          // nodes to hold fast
     std::vector<Region> regions;
     Mapping mapping = Mapping::automatic;

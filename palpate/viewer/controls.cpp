@@ -294,6 +294,7 @@ void Controls::show_body(Viewer& viewer, std::size_t b) {
         amount("shear", "springs.shear", recipe.springs->shear, "%.3g N/m");
         amount("flexion", "springs.flexion", recipe.springs->flexion, "%.3g N/m");
     }
+    amount("bending", "bending", recipe.bending, "%.3g N·m");
     amount("density", "density", material.density, recipe.is_cloth() ? "%.3g kg/m²" : "%.4g kg/m³");
     amount("mass", "mass", material.mass, "%.3g kg");
     float damping = material.damping;

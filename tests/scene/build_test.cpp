@@ -223,6 +223,12 @@ TEST(Build, ASheetIsItsOwnSurfaceAndMayBeOpen) {
     EXPECT_EQ(sheet.body.faces.size(), 2u);
     EXPECT_NEAR(mass(sheet.body), 0.5, 1e-6);
     EXPECT_EQ(make(text + "largest = false\n", scratch / ".").models[0].body.count(), 7u);
+
+    EXPECT_EQ(spring_ends(sheet.body).size(), 6u);  // five edges and a flexion spring,
+    const Body stiff = make(text + "bending = 1e-3\n", scratch / ".").models[0].body;
+    EXPECT_EQ(spring_ends(stiff).size(), 5u);  // or a hinge
+    ASSERT_EQ(std::get<Bending>(stiff.terms.at(1)).hinges.size(), 1u);
+    EXPECT_FLOAT_EQ(std::get<Bending>(stiff.terms[1]).hinges[0].stiffness, 2e-3f);
 }
 
 TEST(Build, APictureCoversARectangleOfCloth) {

@@ -28,6 +28,7 @@ link_damping = 0.001
 [[body]]
 surface = "flag.ply"
 sheet = true
+bending = 1e-5
 mass = 0.1
 [[body]]
 dims = [3, 4, 5]
@@ -41,6 +42,7 @@ rotate = [0, 90, 0]
     EXPECT_EQ(flag.springs.value().shear, 20);
     EXPECT_EQ(flag.material.link_damping, 0.001f);
     EXPECT_TRUE(sheet.sheet);
+    EXPECT_EQ(sheet.bending, 1e-5f);
     EXPECT_FALSE(sheet.springs);
     EXPECT_EQ(box.springs.value().structural, 7);
     EXPECT_EQ(box.springs->flexion, 0);
@@ -56,6 +58,8 @@ TEST(Scene, ClothThatDoesNotFit) {
     expect_body(grid + weight + "youngs_modulus = 10\n", {"youngs_modulus", "springs"});
     expect_body(grid + weight + "stiffness = 10\n", {"stiffness", "springs"});
     expect_body(grid + weight + "springs = 3\n", {"springs", "table"});
+    expect_body(grid + weight + "bending = 1e-5\n", {"bending", "no sheet", "flexion"});
+    expect_body("surface = \"x.ply\"\nsheet = true\nbending = -1\n" + weight, {"bending", "negative"});
     expect_body(grid + weight + "springs = { bending = 3 }\n", {"bending", "springs"});
     expect_body(grid + weight + "springs = { structural = 0 }\n", {"structural"});
     expect_body(grid + weight + "springs = { structural = 1, shear = -1 }\n", {"springs", "negative"});

@@ -44,7 +44,7 @@ struct QuietPass : Pass {
     static bool calm(const Pass& p) { return p.link_damping == 0 && p.wind.w == 0; }
 };
 
-// What the physics asks of a node whatever its springs. Only bodies whose springs are in a table have hinges.
+// What the physics asks of a node whatever its springs; hinges only of one that has them.
 template <class AnyPass>
 struct Eyes {
     using Real = Pack;
@@ -253,12 +253,12 @@ struct GridNode : Eyes<AnyPass> {
 #undef LINKS
 };
 
-// Nodes with their springs written out. What acts on a node whatever its springs, obstacles and tools, is
-// made for these alone.
-template <class AnyPass = Pass>
+// Nodes with their springs written out, and their hinges, if the body has any. What acts on a node whatever
+// its springs, obstacles and tools, is made for these alone.
+template <class AnyPass = Pass, bool with_hinges = false>
 struct TableNode : Eyes<AnyPass> {
     using WithPass = AnyPass;
-    using Quiet = TableNode<QuietPass>;
+    using Quiet = TableNode<QuietPass, with_hinges>;
     USE_EYES(AnyPass)
     struct Constants {
         explicit Constants(const Pass&) {}
@@ -310,7 +310,7 @@ struct TableNode : Eyes<AnyPass> {
 #undef FAN
 #define FAN slice().fan
 #define LINKS slice().count
-#define HINGES hinges().count
+#define HINGES (with_hinges ? hinges().count : 0)
 #define UNROLL
 #define OWN_PULL
 #include "palpate/solver/node.inl"
@@ -533,8 +533,8 @@ bool torn(const Sweep& s, int first_block, int end_block) {
 
 // Calls act<Node>() with the nodes that a body is made of.
 template <class Act>
-auto of(Springs springs, Act act) {
-    switch (springs) {
+auto of(const Laid& body, Act act) {
+    switch (body.springs) {
         case Springs::lattice_whole:
             return act.template operator()<GridNode<LatticeStencil, 1, true, false>>();
         case Springs::lattice:
@@ -554,17 +554,18 @@ auto of(Springs springs, Act act) {
         case Springs::table:
             break;
     }
-    return act.template operator()<TableNode<>>();
+    return body.hinges.slices ? act.template operator()<TableNode<Pass, true>>()
+                              : act.template operator()<TableNode<>>();
 }
 
 void pass_over(const Sweep& s, int first_block, int end_block, Largest& largest) {
-    of(s.body.springs, [&]<class At>() { pass<At>(s, first_block, end_block, largest); });
+    of(s.body, [&]<class At>() { pass<At>(s, first_block, end_block, largest); });
 }
 void normals_over(const Sweep& s, int first_block, int end_block, float* x, float* y, float* z) {
-    of(s.body.springs, [&]<class At>() { normals<At>(s, first_block, end_block, x, y, z); });
+    of(s.body, [&]<class At>() { normals<At>(s, first_block, end_block, x, y, z); });
 }
 bool torn_over(const Sweep& s, int first_block, int end_block) {
-    return of(s.body.springs, [&]<class At>() { return torn<At>(s, first_block, end_block); });
+    return of(s.body, [&]<class At>() { return torn<At>(s, first_block, end_block); });
 }
 
 Kernels all() {

@@ -69,7 +69,7 @@ struct Laid {
     const std::uint32_t* words[2];          // a grid's shares, one bit a link, or three of ten links each
     const float* half_strength;             // half of each node's factor on stiffness; null: 1
     Ties ties;                              // a table's
-    Hinges hinges;                          // a table's
+    Hinges hinges;                          // a table's; null where it has none
     const float* inverse_mass;              // 1/kg
     const float *rest_x, *rest_y, *rest_z;  // m
     const float *area, *cover;              // m², m

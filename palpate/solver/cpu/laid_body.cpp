@@ -80,6 +80,11 @@ std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
     return {springs, std::move(links)};
 }
 
+bool has_hinges(const Body& body) {
+    return std::ranges::any_of(body.terms,
+                               [](const Term& term) { return std::holds_alternative<Bending>(term); });
+}
+
 bool in_quarters(Springs springs) {
     return springs == Springs::lattice || springs == Springs::lattice_with_strength ||
            springs == Springs::turned_lattice;
@@ -107,10 +112,13 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
     std::copy(springs.second.begin(), springs.second.end(), view_.along.begin());
     if (view_.springs == Springs::table) {
         ties_.emplace(body, layout_, lanes);
-        hinges_.emplace(body, layout_, lanes);
-        bytes_ += ties_->bytes() + hinges_->bytes();
+        bytes_ += ties_->bytes();
         view_.ties = ties_->view();
-        view_.hinges = hinges_->view();
+        if (has_hinges(body)) {
+            hinges_.emplace(body, layout_, lanes);
+            bytes_ += hinges_->bytes();
+            view_.hinges = hinges_->view();
+        }
     } else {
         lay_grid(body);
     }
