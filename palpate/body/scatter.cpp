@@ -64,7 +64,7 @@ dvec3 place(const OnTriangle& vertex, At at, std::span<const vec3> normals) {
             approximate +=
                 double(vertex.weights[k]) * Text::clear_direction(dvec3(normals[std::size_t(node)]));
     }
-    const Text::Followed f = Text::on_triangle(at(a), at(b), at(c), approximate, vertex.curvature);
+    const Text::MappedVertex f = Text::on_triangle(at(a), at(b), at(c), approximate, vertex.curvature);
     return under + Text::expand(f, vertex.offset.x, vertex.offset.y, vertex.offset.z);
 }
 template <class At>

@@ -2,7 +2,7 @@
 
 namespace palpate {
 
-bool needs(const Scheme& scheme, Where where) {
+bool needs(const Scheme& scheme, StateBuffer where) {
     switch (where) {
         case current:
         case between:

@@ -8,25 +8,26 @@
 
 namespace palpate {
 
-/// The states of a body that a backend keeps. A step begins at `current`. Its passes write between and
+/// The states of a body that a machine keeps. A step begins at `current`. Its passes write between and
 /// further by turns; the last of several writes over `current`, whose neighbours nobody looks at any more.
-/// The only one of a step writes between, and the two change places.
-enum Where { current, between, further, sum };
+/// The only one of a step writes between, and the two buffers are swapped.
+enum StateBuffer { current, between, further, sum };
 
 /// Which of them a scheme needs, so that a backend keeps no more: a node costs as much for each.
-bool needs(const Scheme& scheme, Where where);
+bool needs(const Scheme& scheme, StateBuffer where);
 
-/// One pass over all nodes.
-struct Turn {
-    Where start, at, next;  // where it starts from; where forces are taken; where it writes
-    bool opens;             // the first of a step
-    bool ends;              // the last of a call
-    double impulse;         // s, over which its forces give momentum to the nodes
+/// What a machine must know of a pass besides its numbers.
+struct PassPlan {
+    StateBuffer start, at, next;  // where it starts from; where forces are taken; where it writes
+    bool opens;                   // the first of a step
+    bool ends;                    // the last of a call
+    double impulse;               // s, over which its forces give momentum to the nodes
     std::span<const RoundTip> tips = {};
 };
 
-/// One call of Solver::step, as every machine goes through it. Places and velocities are counted from its
-/// origin; guides lead to places counted from where that is at the end.
+/// One call of Solver::step, as every machine goes through it: so many steps, of each the stages of the
+/// scheme, of each one pass over all nodes. Places and velocities are counted from its origin; guides lead to
+/// places counted from where that is at the end.
 struct Call {
     const Scheme& scheme;
     const Simulation& simulation;
@@ -39,15 +40,15 @@ struct Call {
     double lag;  // s, of the velocities when it begins
     Origin origin;
 
-    /// Runs every pass of every step in turn, run(const Pass&, const Turn&): the neighbours move too. Tools
-    /// and colliders stand where they are by then.
+    /// Runs every pass of every step in plan, run(const Pass&, const PassPlan&): the neighbours move too.
+    /// Tools and colliders stand where they are by then.
     template <class Run>
     void for_each_pass(Run run) const {
         Pass pass = constant;
         std::vector<RoundTip> tips;
         for (int i = 0; i < steps; ++i) {
             double reached = 0;  // by the last stage, in steps
-            Where at = current;
+            StateBuffer at = current;
             for (const Stage& stage : scheme.stages) {
                 const bool last = &stage == &scheme.stages.back();
                 const double behind = i == 0 ? lag : lag_after();
@@ -62,9 +63,9 @@ struct Call {
                 pass.last = last ? (i + 1 == steps ? 2 : 1) : 0;
                 pass.duration = float(reached * step);
                 place_obstacles(pass, simulation, influences, (i + reached) * step, origin);
-                const Where next = last && at != current ? current : at == between ? further : between;
-                run(pass, Turn{stage.from_sum ? sum : current, at, next, at == current,
-                               last && i + 1 == steps, impulse, tips});
+                const StateBuffer next = last && at != current ? current : at == between ? further : between;
+                run(pass, PassPlan{stage.from_sum ? sum : current, at, next, at == current,
+                                   last && i + 1 == steps, impulse, tips});
                 at = next;
             }
         }

@@ -31,8 +31,8 @@ const char* prelude_glsl =
 const char* eyes_glsl =
 #include "embedded/eyes.glsl.h"
     ;
-const char* turn_glsl =
-#include "embedded/turn.glsl.h"
+const char* pass_node_glsl =
+#include "embedded/pass_node.glsl.h"
     ;
 
 template <class Value>
@@ -200,7 +200,7 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
         made.tiles = cut.groups;
     }
     for (const char* part :
-         {bindings_inl, prelude_glsl, pass_inl, eyes_glsl, node_inl, obstacles_inl, turn_glsl})
+         {bindings_inl, prelude_glsl, pass_inl, eyes_glsl, node_inl, obstacles_inl, pass_node_glsl})
         text += part;
     made.physics = std::move(text);
     return made;

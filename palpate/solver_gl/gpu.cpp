@@ -68,7 +68,7 @@ class Gpu final : public Machine {
           shown_normals_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           adders_(std::clamp(groups(int(placement_.rim.size())) * group_size, group_size, most_adders)),
           answers_(context_, adders_) {
-        for (Where where : {current, between, further, sum})
+        for (StateBuffer where : {current, between, further, sum})
             if (needs(scheme_, where) || (where == further && scheme_.stages.size() > 1))
                 states_[where].emplace(make_state());
         if (adds_up()) next_sum_.emplace(make_state());
@@ -94,12 +94,12 @@ class Gpu final : public Machine {
             answers_.clear_impulses(influences);
             on_gpu_.push(call.pushes, influences.pushes);
         }
-        call.for_each_pass([&](const Pass& pass, const Turn& turn) {
+        call.for_each_pass([&](const Pass& pass, const PassPlan& plan) {
             on_gpu_.upload(pass);
-            if (tools) on_gpu_.place(turn.tips);
-            look_at(*states_[turn.at]);
-            if (tools && turn.impulse > 0) add_impulses(*tools, call, turn.impulse);
-            run(pipeline, turn);
+            if (tools) on_gpu_.place(plan.tips);
+            look_at(*states_[plan.at]);
+            if (tools && plan.impulse > 0) add_impulses(*tools, call, plan.impulse);
+            run(pipeline, plan);
         });
         return close(influences, call.origin.after(call.steps * call.step), call.step);
     }
@@ -226,14 +226,14 @@ class Gpu final : public Machine {
     }
 
     // No pass writes what it reads: the last of several writes `further`, which then is the current state.
-    void run(Pipeline& pipeline, const Turn& turn) {
-        const bool over = turn.next == current;
-        const Moving &now = *states_[turn.at],
-                     &start = turn.start == sum ? *states_[sum] : *states_[turn.start];
-        const Moving& next = *states_[over ? further : turn.next];
-        const Moving& total = turn.opens || !adds_up() ? now : *states_[sum];
+    void run(Pipeline& pipeline, const PassPlan& plan) {
+        const bool over = plan.next == current;
+        const Moving &now = *states_[plan.at],
+                     &start = plan.start == sum ? *states_[sum] : *states_[plan.start];
+        const Moving& next = *states_[over ? further : plan.next];
+        const Moving& total = plan.opens || !adds_up() ? now : *states_[sum];
         pipeline.pass({now, start, states_[current]->positions, total, next, adds_up() ? *next_sum_ : next});
-        const bool sums_now = adds_up() && turn.start != sum;
+        const bool sums_now = adds_up() && plan.start != sum;
         if (sums_now) std::swap(*states_[sum], *next_sum_);
         const bool single = scheme_.stages.size() == 1;
         if (over || single) std::swap(*states_[current], *states_[over ? further : between]);
@@ -311,7 +311,7 @@ class Gpu final : public Machine {
     gl::Program closing_;
     std::optional<Touched> touched_;
     const Pass quiet_;                         // nothing touches or moves it
-    mutable std::optional<Moving> states_[4];  // Where
+    mutable std::optional<Moving> states_[4];  // StateBuffer
     std::optional<Moving> next_sum_, before_;
     gl::Buffer shown_positions_, shown_normals_;  // of the nodes in their order
     int adders_;                                  // invocations that add up impulses

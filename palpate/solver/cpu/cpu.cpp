@@ -22,10 +22,10 @@ class Cpu final : public Machine {
           quiet_(make_pass(body, simulation)),
           own_team_(team ? nullptr : std::make_unique<Team>(simulation.threads)),
           team_(team ? *team : *own_team_) {
-        for (Where where : {current, between, further, sum})
+        for (StateBuffer where : {current, between, further, sum})
             if (needs(scheme_, where)) states_[where] = fields(where == between && velocities_stay());
         before_ = fields(false);
-        for (Where where : {current, between, further})
+        for (StateBuffer where : {current, between, further})
             if (states_[where].x) laid_.let_neighbours_see(states_[where]);
         share_out();
     }
@@ -79,10 +79,10 @@ class Cpu final : public Machine {
             brought_up.*f = arrays.back().data();
         });
         const Fields states[] = {states_[current], brought_up, {}, {}};
-        const Sweep sweep{laid_.view(), pass, at_now, states, {}};
+        const Task task{laid_.view(), pass, at_now, states, {}};
         Largest none;
-        kernels_.show(sweep, 0, all_blocks());
-        kernels_.pass(sweep, 0, all_blocks(), none);
+        kernels_.show(task, 0, all_blocks());
+        kernels_.pass(task, 0, all_blocks(), none);
         std::vector<dvec3> velocities;
         for (int s : laid_.layout().slot)
             velocities.emplace_back(brought_up.vx[s], brought_up.vy[s], brought_up.vz[s]);
@@ -91,9 +91,9 @@ class Cpu final : public Machine {
 
     void show(const Origin& origin, std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
         const Fields& free = states_[between];  // between calls nobody needs it
-        const Sweep sweep{laid_.view(), quiet_, at_now, states_, {}};
-        kernels_.show(sweep, 0, all_blocks());
-        kernels_.normals(sweep, 0, all_blocks(), free.x, free.y, free.z);
+        const Task task{laid_.view(), quiet_, at_now, states_, {}};
+        kernels_.show(task, 0, all_blocks());
+        kernels_.normals(task, 0, all_blocks(), free.x, free.y, free.z);
         positions.resize(body_.count());
         normals.resize(body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {
@@ -165,28 +165,28 @@ class Cpu final : public Machine {
             for (std::size_t where = 0; where < 4; ++where) moved[where] = moved_[where].data();
             const auto mine = own(pushes, first, end), mine_each = own(each, first, end);
             hold(pushing, mine);
-            const Sweep begin{laid_.view(), call.constant, at_now, states, moved, &pushing};
+            const Task begin{laid_.view(), call.constant, at_now, states, moved, &pushing};
             if (states[current].places) {
                 kernels_.show(begin, first, end);
                 team_.meet();
             }
             if (touched) kernels_.find_bounds(begin, first, end);
-            call.for_each_pass([&](const Pass& pass, const Turn& turn) {
-                const Sweep sweep{laid_.view(), pass, turn, states, moved, &pushing};
+            call.for_each_pass([&](const Pass& pass, const PassPlan& plan) {
+                const Task task{laid_.view(), pass, plan, states, moved, &pushing};
                 aim(pushing, mine, pass.time);
-                if (turn.impulse > 0) {
-                    if (pass.tips > 0) kernels_.give(sweep, first, end, given_.data());
-                    give(mine_each, pass.time, turn.impulse, states[turn.at], found.by_pushes);
+                if (plan.impulse > 0) {
+                    if (pass.tips > 0) kernels_.give(task, first, end, given_.data());
+                    give(mine_each, pass.time, plan.impulse, states[plan.at], found.by_pushes);
                 }
-                kernels_.pass(sweep, first, end, largest[std::size_t(member)]);
+                kernels_.pass(task, first, end, largest[std::size_t(member)]);
                 team_.meet();
-                if (pass.last && turn.next != current) {
-                    std::swap(states[current], states[turn.next]);
-                    std::swap(moved[current], moved[turn.next]);
+                if (pass.last && plan.next != current) {
+                    std::swap(states[current], states[plan.next]);
+                    std::swap(moved[current], moved[plan.next]);
                 }
             });
             let_go(pushing, mine);
-            const Sweep last{laid_.view(), quiet_, at_now, states, moved};
+            const Task last{laid_.view(), quiet_, at_now, states, moved};
             if (kernels_.torn(last, first, end)) torn = true;
         });
         for (const Largest& of_member : largest) {
@@ -283,7 +283,7 @@ class Cpu final : public Machine {
         f.vx[s] = float(v.x), f.vy[s] = float(v.y), f.vz[s] = float(v.z);
     }
 
-    static constexpr Turn at_now{current, current, between, true, false, 0};
+    static constexpr PassPlan at_now{current, current, between, true, false, 0};
 
     const Body& body_;
     const Scheme& scheme_;
@@ -293,7 +293,7 @@ class Cpu final : public Machine {
     std::unique_ptr<Team> own_team_;
     Team& team_;
     std::vector<Array<float>> arrays_;  // what the states are made of
-    Fields states_[4] = {};             // Where
+    Fields states_[4] = {};             // StateBuffer
     Fields before_ = {};                // as it was before the call
     std::vector<int> parts_;            // of the blocks, by members
     std::vector<Bounds> moved_[4];      // of each state and block

@@ -52,7 +52,7 @@ struct Eyes {
 
     const Laid& body;
     const AnyPass& pass;
-    const Sweep& sweep;
+    const Task& task;
     const Fields& at;
     std::ptrdiff_t id;  // slot of the first of the nodes
 
@@ -85,16 +85,16 @@ struct Eyes {
     FN Pack3 origin() const { return load(body.rest_x, body.rest_y, body.rest_z, id); }
     FN Pack area() const { return load(body.area + id); }
     FN Pack cover() const { return load(body.cover + id); }
-    RoundTip tip(int i) const { return sweep.turn.tips[std::size_t(i)]; }
+    RoundTip tip(int i) const { return task.plan.tips[std::size_t(i)]; }
     FN Pack3 push() const {
-        const Pushes& p = *sweep.pushes;
+        const Pushes& p = *task.pushes;
         return load(p.force_x, p.force_y, p.force_z, id);
     }
     FN Pack3 push_target() const {
-        const Pushes& p = *sweep.pushes;
+        const Pushes& p = *task.pushes;
         return load(p.target_x, p.target_y, p.target_z, id);
     }
-    FN Pack push_stiffness() const { return load(sweep.pushes->stiffness + id); }
+    FN Pack push_stiffness() const { return load(task.pushes->stiffness + id); }
     FN Pack3 corner(int i) const {
         const vec3 c = body.corners[i];
         return {c.x, c.y, c.z};
@@ -132,7 +132,7 @@ using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
 // The members of a base that depends on a template must be named.
 #define USE_EYES(P)                                                                                          \
-    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::sweep, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin,           \
+    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::task, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin,            \
         Eyes<P>::area, Eyes<P>::cover, Eyes<P>::tip, Eyes<P>::push, Eyes<P>::push_target,                    \
         Eyes<P>::push_stiffness, Eyes<P>::corner, Eyes<P>::distance_at, Eyes<P>::uphill_at, Eyes<P>::hinges, \
         Eyes<P>::hinge_end, Eyes<P>::hinge_toward, Eyes<P>::hinge_passing, Eyes<P>::hinge_stiffness,         \
@@ -173,7 +173,7 @@ struct GridNode : Eyes<AnyPass> {
     Pack ahead[3][2 * Links::reach + 1];  // from the node along each axis, in spacings: less where it is now
     Pack half_strength;
 
-    FN GridNode(const Sweep& s, const AnyPass& p, const Constants& c, const Fields& from, int run,
+    FN GridNode(const Task& s, const AnyPass& p, const Constants& c, const Fields& from, int run,
                 std::ptrdiff_t slot)
         : Eyes<AnyPass>{s.body, p, s, from, slot},
           constants(c),
@@ -273,7 +273,7 @@ struct TableNode : Eyes<AnyPass> {
         float share[HWY_LANES(float)], stiffness[HWY_LANES(float)], longest[HWY_LANES(float)];
     };
 
-    FN TableNode(const Sweep& s, const AnyPass& p, const Constants&, const Fields& from, int,
+    FN TableNode(const Task& s, const AnyPass& p, const Constants&, const Fields& from, int,
                  std::ptrdiff_t slot)
         : Eyes<AnyPass>{s.body, p, s, from, slot} {}
 
@@ -339,7 +339,7 @@ FN void store_node(const Node& node, const Fields& to, std::ptrdiff_t i) {
 }
 
 template <class At, class Do>
-FN void for_each_pack(const Sweep& s, const typename At::WithPass& pass,
+FN void for_each_pack(const Task& s, const typename At::WithPass& pass,
                       const typename At::Constants& constants, const Fields& at, int block, Do act) {
     for (int r = s.body.blocks[block].first_run; r < s.body.blocks[block].end_run; ++r) {
         const Run run = s.body.runs[r];
@@ -350,35 +350,35 @@ FN void for_each_pack(const Sweep& s, const typename At::WithPass& pass,
     }
 }
 template <class At, class Do>
-FN void for_each_pack(const Sweep& s, int first_block, int end_block, Do act) {
+FN void for_each_pack(const Task& s, int first_block, int end_block, Do act) {
     const typename At::WithPass pass(s.pass);
     const typename At::Constants constants(pass);
     for (int block = first_block; block < end_block; ++block)
-        for_each_pack<At>(s, pass, constants, s.states[s.turn.at], block, act);
+        for_each_pack<At>(s, pass, constants, s.states[s.plan.at], block, act);
 }
 
 // Forces and the motion that they bring.
 template <class At>
-FN void move(const Sweep& s, const typename At::WithPass& pass, const typename At::Constants& constants,
+FN void move(const Task& s, const typename At::WithPass& pass, const typename At::Constants& constants,
              int block) {
-    const Fields start = s.states[s.turn.start], at = s.states[s.turn.at], next = s.states[s.turn.next],
+    const Fields start = s.states[s.plan.start], at = s.states[s.plan.at], next = s.states[s.plan.next],
                  total = s.states[sum];
     for_each_pack<At>(s, pass, constants, at, block, [&](At& eyes, std::ptrdiff_t i) INLINED {
         const auto node = load_node<At>(s.body, at, i);
         const Pack3 change = pass.kick > 0 ? eyes.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
         if (pass.part > 0) {
-            const auto before = load_node<At>(s.body, s.turn.opens ? at : total, i);
+            const auto before = load_node<At>(s.body, s.plan.opens ? at : total, i);
             store_node(eyes.collect(before, node, change), total, i);
         }
         auto from = node;
-        if (s.turn.start != s.turn.at) from = load_node<At>(s.body, start, i);
+        if (s.plan.start != s.plan.at) from = load_node<At>(s.body, start, i);
         store_node(eyes.integrate(from, node, change), next, i);
     });
 }
 
 // Out of the obstacles. `was`: where the step began.
-HWY_NOINLINE void push_out(const Sweep& s, int block, const Fields& was) {
-    const Fields next = s.states[s.turn.next];
+HWY_NOINLINE void push_out(const Task& s, int block, const Fields& was) {
+    const Fields next = s.states[s.plan.next];
     const TableNode<>::Constants none(s.pass);
     for_each_pack<TableNode<>>(
         s, s.pass, none, next, block, [&](TableNode<>& eyes, std::ptrdiff_t i) INLINED {
@@ -394,8 +394,8 @@ FN Pack on_a_multiple(Pack a, float finest) {
 }
 
 // What is done once, at the end of a call.
-FN void finish(const Sweep& s, const Block& block, const Fields& was, Largest& largest) {
-    const Fields next = s.states[s.turn.next];
+FN void finish(const Task& s, const Block& block, const Fields& was, Largest& largest) {
+    const Fields next = s.states[s.plan.next];
     const float finest = s.body.finest;
     const Pack3 along(s.pass.origin_speed.x, s.pass.origin_speed.y, s.pass.origin_speed.z);
     Pack speed = 0.0f, move = 0.0f;
@@ -415,8 +415,8 @@ FN void finish(const Sweep& s, const Block& block, const Fields& was, Largest& l
 // Where the nodes of a block were when the step began: kept, if the last of several passes writes over it.
 class Kept {
  public:
-    FN Kept(const Sweep& s, const Block& block) : fields(s.states[current]) {
-        if (s.turn.next != current || !(s.turn.ends || s.pass.obstacles > 0)) return;
+    FN Kept(const Task& s, const Block& block) : fields(s.states[current]) {
+        if (s.plan.next != current || !(s.plan.ends || s.pass.obstacles > 0)) return;
         float** fields_of[] = {&fields.x, &fields.y, &fields.z};
         for (std::size_t k = 0; k < 3; ++k) {
             std::copy(*fields_of[k] + block.first_slot, *fields_of[k] + block.end_slot, memory_[k]);
@@ -452,14 +452,14 @@ HWY_NOINLINE void show_block(const Fields& at, const Block& block) {
     }
 }
 
-void show(const Sweep& s, int first_block, int end_block) {
-    for (int b = first_block; b < end_block; ++b) show_block(s.states[s.turn.at], s.body.blocks[b]);
+void show(const Task& s, int first_block, int end_block) {
+    for (int b = first_block; b < end_block; ++b) show_block(s.states[s.plan.at], s.body.blocks[b]);
 }
 
 // A pass: block after block, each whole while it is in the first cache. Where nothing is near, nothing is
 // looked for.
 template <class At>
-void pass(const Sweep& s, int first_block, int end_block, Largest& largest) {
+void pass(const Task& s, int first_block, int end_block, Largest& largest) {
     using Quiet = typename At::Quiet;
     const typename Quiet::WithPass quiet_pass(s.pass);
     const typename Quiet::Constants quiet_constants(quiet_pass);
@@ -468,26 +468,26 @@ void pass(const Sweep& s, int first_block, int end_block, Largest& largest) {
     for (int b = first_block; b < end_block; ++b) {
         const Block& block = s.body.blocks[b];
         const Kept was(s, block);
-        if (!QuietPass::calm(s.pass) || (tools && touched(s, b, s.moved[s.turn.at][b])))
+        if (!QuietPass::calm(s.pass) || (tools && touched(s, b, s.moved[s.plan.at][b])))
             move<At>(s, s.pass, constants, b);
         else
             move<Quiet>(s, quiet_pass, quiet_constants, b);
         if (tools || s.pass.obstacles > 0) {
-            Bounds& moved = s.moved[s.turn.next][b];
-            moved = bounds_of(s.states[s.turn.next], block);
+            Bounds& moved = s.moved[s.plan.next][b];
+            moved = bounds_of(s.states[s.plan.next], block);
             if (near_obstacles(s, b, moved)) {
                 push_out(s, b, was.fields);
-                moved = bounds_of(s.states[s.turn.next], block);
+                moved = bounds_of(s.states[s.plan.next], block);
             }
         }
-        if (s.turn.ends) finish(s, block, was.fields, largest);
-        if (s.body.springs == Springs::table) show_block(s.states[s.turn.next], block);
+        if (s.plan.ends) finish(s, block, was.fields, largest);
+        if (s.body.springs == Springs::table) show_block(s.states[s.plan.next], block);
     }
 }
 
-void find_bounds(const Sweep& s, int first_block, int end_block) {
+void find_bounds(const Task& s, int first_block, int end_block) {
     for (int b = first_block; b < end_block; ++b)
-        s.moved[s.turn.at][b] = bounds_of(s.states[s.turn.at], s.body.blocks[b]);
+        s.moved[s.plan.at][b] = bounds_of(s.states[s.plan.at], s.body.blocks[b]);
 }
 
 // Adds up what a register holds, one node after the other.
@@ -497,33 +497,33 @@ FN void add(Pack3 force, double seconds, dvec3& sum) {
     for (std::size_t n = 0; n < lanes(); ++n) sum += seconds * dvec3(x[n], y[n], z[n]);
 }
 
-void give(const Sweep& s, int first_block, int end_block, dvec3* given) {
-    const Fields at = s.states[s.turn.at];
+void give(const Task& s, int first_block, int end_block, dvec3* given) {
+    const Fields at = s.states[s.plan.at];
     const TableNode<>::Constants none(s.pass);
     for (int b = first_block; b < end_block; ++b) {
-        if (!touched(s, b, s.moved[s.turn.at][b])) continue;
+        if (!touched(s, b, s.moved[s.plan.at][b])) continue;
         for_each_pack<TableNode<>>(s, s.pass, none, at, b, [&](TableNode<>& eyes, std::ptrdiff_t i) INLINED {
             const Pack3 p = load(at.x, at.y, at.z, i);
             for (int t = 0; t < s.pass.tips; ++t) {
                 const Pack3 force = eyes.tip_force(p, t);
                 if (any_node(dot(force, force) > 0.0f))
-                    add(force, s.turn.impulse, given[b * s.pass.tips + t]);
+                    add(force, s.plan.impulse, given[b * s.pass.tips + t]);
             }
         });
     }
 }
 
 template <class At>
-void normals(const Sweep& s, int first_block, int end_block, float* x, float* y, float* z) {
-    const Fields at = s.states[s.turn.at];
+void normals(const Task& s, int first_block, int end_block, float* x, float* y, float* z) {
+    const Fields at = s.states[s.plan.at];
     for_each_pack<At>(s, first_block, end_block, [&](At& eyes, std::ptrdiff_t i) INLINED {
         store(eyes.outward(load(at.x, at.y, at.z, i)), x, y, z, i);
     });
 }
 
 template <class At>
-bool torn(const Sweep& s, int first_block, int end_block) {
-    const Fields at = s.states[s.turn.at];
+bool torn(const Task& s, int first_block, int end_block) {
+    const Fields at = s.states[s.plan.at];
     Pack wrong = 0.0f;
     for_each_pack<At>(s, first_block, end_block, [&](At& eyes, std::ptrdiff_t i) INLINED {
         wrong += eyes.torn(load(at.x, at.y, at.z, i));
@@ -558,13 +558,13 @@ auto of(const Laid& body, Act act) {
                               : act.template operator()<TableNode<>>();
 }
 
-void pass_over(const Sweep& s, int first_block, int end_block, Largest& largest) {
+void pass_over(const Task& s, int first_block, int end_block, Largest& largest) {
     of(s.body, [&]<class At>() { pass<At>(s, first_block, end_block, largest); });
 }
-void normals_over(const Sweep& s, int first_block, int end_block, float* x, float* y, float* z) {
+void normals_over(const Task& s, int first_block, int end_block, float* x, float* y, float* z) {
     of(s.body, [&]<class At>() { normals<At>(s, first_block, end_block, x, y, z); });
 }
-bool torn_over(const Sweep& s, int first_block, int end_block) {
+bool torn_over(const Task& s, int first_block, int end_block) {
     return of(s.body, [&]<class At>() { return torn<At>(s, first_block, end_block); });
 }
 

@@ -87,39 +87,39 @@ struct Pushes {
     float* stiffness;                       // N/m
 };
 
-/// One pass over some blocks.
-struct Sweep {
+/// What a kernel works on: a pass over some of the blocks.
+struct Task {
     const Laid& body;
     const Pass& pass;
-    const Turn& turn;
-    const Fields* states;  // as Where counts them
+    const PassPlan& plan;
+    const Fields* states;  // as StateBuffer counts them
     std::array<Bounds*, 4>
         moved;  // of each state and block: how far its nodes have come from their places at rest, m
     const Pushes* pushes = nullptr;
 };
 
-/// The largest of what a sweep saw at the end of a call, squared.
+/// The largest of what a pass saw at the end of a call, squared.
 struct Largest {
     float speed = 0, move = 0;  // m²/s², m²
 };
 
 /// Whether a tip or a push, or an obstacle, may touch nodes of a block that have come so far from their
 /// places at rest.
-bool touched(const Sweep& sweep, int block, const Bounds& moved);
-bool near_obstacles(const Sweep& sweep, int block, const Bounds& moved);
+bool touched(const Task& task, int block, const Bounds& moved);
+bool near_obstacles(const Task& task, int block, const Bounds& moved);
 
 /// The kernels for this machine's instruction set. Each works on the blocks from one to before another.
 struct Kernels {
     const char* instructions;  // their name: AVX2, AVX3 (AVX-512), NEON …
     int lanes;                 // floats in a register
-    void (*pass)(const Sweep&, int first_block, int end_block, Largest& largest);
+    void (*pass)(const Task&, int first_block, int end_block, Largest& largest);
     /// Adds what tips give to the nodes of each block, N s: as many numbers a block as there are tips.
-    void (*give)(const Sweep&, int first_block, int end_block, dvec3* given);
-    void (*find_bounds)(const Sweep&, int first_block, int end_block);
+    void (*give)(const Task&, int first_block, int end_block, dvec3* given);
+    void (*find_bounds)(const Task&, int first_block, int end_block);
     /// Neighbours in a table see where nodes have been put from outside. Before anything looks at neighbours.
-    void (*show)(const Sweep&, int first_block, int end_block);
-    void (*normals)(const Sweep&, int first_block, int end_block, float* x, float* y, float* z);
-    bool (*torn)(const Sweep&, int first_block, int end_block);
+    void (*show)(const Task&, int first_block, int end_block);
+    void (*normals)(const Task&, int first_block, int end_block, float* x, float* y, float* z);
+    bool (*torn)(const Task&, int first_block, int end_block);
 };
 Kernels kernels();
 

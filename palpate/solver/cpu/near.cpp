@@ -46,25 +46,25 @@ bool may_touch(const Bounds& box, const Obstacle& o, const Laid& body) {
 
 }  // namespace
 
-bool touched(const Sweep& sweep, int block, const Bounds& moved) {
-    const Block& of = sweep.body.blocks[block];
-    if (sweep.pass.pushes > 0) {
-        const auto& slots = sweep.pushes->slots;
+bool touched(const Task& task, int block, const Bounds& moved) {
+    const Block& of = task.body.blocks[block];
+    if (task.pass.pushes > 0) {
+        const auto& slots = task.pushes->slots;
         const auto next = std::ranges::lower_bound(slots, of.first_slot);
         if (next != slots.end() && *next < of.end_slot) return true;
     }
-    const Bounds box = place(sweep.body, block, moved);
-    for (int t = 0; t < sweep.pass.tips; ++t) {
-        const vec4 tip = sweep.turn.tips[std::size_t(t)].place;
-        if (may_touch(box, vec3(tip), 1.00001f * (tip.w + sweep.body.furthest_cover[block]))) return true;
+    const Bounds box = place(task.body, block, moved);
+    for (int t = 0; t < task.pass.tips; ++t) {
+        const vec4 tip = task.plan.tips[std::size_t(t)].place;
+        if (may_touch(box, vec3(tip), 1.00001f * (tip.w + task.body.furthest_cover[block]))) return true;
     }
     return false;
 }
 
-bool near_obstacles(const Sweep& sweep, int block, const Bounds& moved) {
-    const Bounds box = place(sweep.body, block, moved);
-    for (int o = 0; o < sweep.pass.obstacles; ++o)
-        if (may_touch(box, sweep.pass.obstacle[o], sweep.body)) return true;
+bool near_obstacles(const Task& task, int block, const Bounds& moved) {
+    const Bounds box = place(task.body, block, moved);
+    for (int o = 0; o < task.pass.obstacles; ++o)
+        if (may_touch(box, task.pass.obstacle[o], task.body)) return true;
     return false;
 }
 

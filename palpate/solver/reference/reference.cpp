@@ -17,7 +17,7 @@ class Reference final : public Machine {
  public:
     Reference(const Body& body, const Simulation& simulation)
         : body_(body), around_(body_, simulation), quiet_(make_pass(body, simulation)) {
-        for (Where where : {current, between, further, sum})
+        for (StateBuffer where : {current, between, further, sum})
             if (needs(scheme(simulation.integrator), where))
                 states_[where] = {std::vector<Real3>(body.count()), std::vector<Real3>(body.count())};
     }
@@ -36,10 +36,10 @@ class Reference final : public Machine {
             around_.push_of[std::size_t(call.pushes[p].node)] = int(p);
         for (const Guide& guide : call.guides)
             states_[current].velocities[std::size_t(guide.node)] = Real3(guide.velocity);
-        call.for_each_pass([&](const Pass& pass, const Turn& turn) {
-            count_impulses(call.influences, pass, turn, found);
-            pass_over_nodes(pass, turn, found);
-            if (pass.last && turn.next != current) std::swap(states_[current], states_[turn.next]);
+        call.for_each_pass([&](const Pass& pass, const PassPlan& plan) {
+            count_impulses(call.influences, pass, plan, found);
+            pass_over_nodes(pass, plan, found);
+            if (pass.last && plan.next != current) std::swap(states_[current], states_[plan.next]);
         });
         for (const Guide& guide : call.guides)
             if (guide.is_led) states_[current].positions[std::size_t(guide.node)] = Real3(guide.to);
@@ -102,18 +102,18 @@ class Reference final : public Machine {
     }
 
  private:
-    void pass_over_nodes(const Pass& pass, const Turn& turn, Findings& found) {
-        const NodeStates<Real>&start = states_[turn.start], &at = states_[turn.at];
-        NodeStates<Real>&next = states_[turn.next], &total = states_[sum];
+    void pass_over_nodes(const Pass& pass, const PassPlan& plan, Findings& found) {
+        const NodeStates<Real>&start = states_[plan.start], &at = states_[plan.at];
+        NodeStates<Real>&next = states_[plan.next], &total = states_[sum];
         for (std::size_t i = 0; i < body_.count(); ++i) {
-            At eyes = see(i, at, pass, turn);
+            At eyes = see(i, at, pass, plan);
             const Node node = load(at, i);
             const Real3 change = pass.kick > 0 ? eyes.acceleration(node) : Real3(0);
-            if (pass.part > 0) store(eyes.collect(load(turn.opens ? at : total, i), node, change), total, i);
+            if (pass.part > 0) store(eyes.collect(load(plan.opens ? at : total, i), node, change), total, i);
             const Real3 was = states_[current].positions[i];
             const Node moved = eyes.collide(eyes.integrate(load(start, i), node, change), was);
             store(moved, next, i);
-            if (!turn.ends) continue;
+            if (!plan.ends) continue;
             const Real3 along(pass.origin_speed);
             found.largest_speed = std::max(found.largest_speed, double(glm::length(moved.velocity + along)));
             found.largest_move = std::max(
@@ -122,23 +122,23 @@ class Reference final : public Machine {
     }
 
     // N s, that tips and pushes give to the nodes in this pass.
-    void count_impulses(const Influences& influences, const Pass& pass, const Turn& turn,
+    void count_impulses(const Influences& influences, const Pass& pass, const PassPlan& plan,
                         Findings& found) const {
-        if (!(turn.impulse > 0)) return;  // a stage that only drifts
-        const NodeStates<Real>& at = states_[turn.at];
+        if (!(plan.impulse > 0)) return;  // a stage that only drifts
+        const NodeStates<Real>& at = states_[plan.at];
         for (std::size_t t = 0; t < found.by_presses.size(); ++t)
             for (std::size_t i = 0; i < body_.count(); ++i)
                 found.by_presses[t] +=
-                    turn.impulse * dvec3(see(i, at, pass, turn).tip_force(at.positions[i], int(t)));
+                    plan.impulse * dvec3(see(i, at, pass, plan).tip_force(at.positions[i], int(t)));
         for (std::size_t p = 0; p < found.by_pushes.size(); ++p) {
             const NodePush& push = influences.pushes[p];
             found.by_pushes[p] +=
-                turn.impulse * dvec3(force_on(push, pass.time, at.positions[std::size_t(push.node)]));
+                plan.impulse * dvec3(force_on(push, pass.time, at.positions[std::size_t(push.node)]));
         }
     }
 
-    At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass, const Turn& turn = {}) const {
-        return reference::see(around_, pass, at, i, turn.tips);
+    At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass, const PassPlan& plan = {}) const {
+        return reference::see(around_, pass, at, i, plan.tips);
     }
     Node load(const NodeStates<Real>& from, std::size_t i) const { return reference::load(around_, from, i); }
     static void store(const Node& node, NodeStates<Real>& into, std::size_t i) {
@@ -156,7 +156,7 @@ class Reference final : public Machine {
     const Body& body_;
     Surroundings around_;
     const Pass quiet_;            // nothing touches or moves it
-    NodeStates<Real> states_[4];  // Where
+    NodeStates<Real> states_[4];  // StateBuffer
     NodeStates<Real> before_;     // the call
 };
 

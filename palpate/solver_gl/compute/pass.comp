@@ -25,7 +25,7 @@ void move(int slot) {
 #ifdef SUMS
     sum = Kept(at(sum_positions, id), at(sum_velocities, id));
 #endif
-    Kept next = turn(now, start, at(was_positions, id).xyz, sum);
+    Kept next = pass_node(now, start, at(was_positions, id).xyz, sum);
     next_positions[id] = next.position;
     next_velocities[id] = next.velocity;
 #ifdef SUMS

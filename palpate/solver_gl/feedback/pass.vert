@@ -19,7 +19,7 @@ void main() {
 #ifdef SUMS
     sum = Kept(sum_position, sum_velocity);
 #endif
-    Kept next = turn(Kept(now_position, now_velocity), Kept(start_position, start_velocity), was_position.xyz, sum);
+    Kept next = pass_node(Kept(now_position, now_velocity), Kept(start_position, start_velocity), was_position.xyz, sum);
     next_position = next.position;
     next_velocity = next.velocity;
 #ifdef SUMS

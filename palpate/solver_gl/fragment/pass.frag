@@ -21,7 +21,7 @@ void main() {
 #ifdef SUMS
     sum = Kept(at(sum_positions, id), at(sum_velocities, id));
 #endif
-    Kept next = turn(now, start, at(was_positions, id).xyz, sum);
+    Kept next = pass_node(now, start, at(was_positions, id).xyz, sum);
     next_position = next.position;
     next_velocity = next.velocity;
 #ifdef SUMS

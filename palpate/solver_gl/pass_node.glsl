@@ -1,4 +1,4 @@
-// turn.glsl: one pass for one node, between a backend's loading and storing. After node.inl and obstacles.inl.
+// pass_node.glsl: one pass for one node, between a backend's loading and storing. After node.inl and obstacles.inl.
 
 // A node as it is kept.
 struct Kept {
@@ -14,7 +14,7 @@ Node node_of(Kept kept) {
 }
 
 // `was`: where the node was when the step began.
-Kept turn(Kept now, Kept start, vec3 was, inout Kept sum) {
+Kept pass_node(Kept now, Kept start, vec3 was, inout Kept sum) {
     if (now.position.w < 0) return now;
     if (pass.only_shifts > 0) {
         now.position.xyz -= pass.place_shift.xyz;
