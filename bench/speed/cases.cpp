@@ -129,6 +129,11 @@ std::vector<Case> cloth_cases() {
     cases.push_back(stepping("128² of triangles", cloth(triangles, linen), with(Backend::cpu)));
     cases.push_back(
         stepping("128² of triangles, shuffled", cloth(shuffled(triangles), linen), with(Backend::cpu)));
+    ClothSettings stiff = linen;
+    stiff.bending = 1e-5f;
+    stiff.stiffness.flexion = 0;
+    cases.push_back(
+        stepping("128² of triangles that resist bending", cloth(triangles, stiff), with(Backend::cpu)));
     cases.push_back(stepping("128², the scalar reference", sheet, with(Backend::reference)));
     return cases;
 }

@@ -98,11 +98,10 @@ struct Body {
     std::vector<int> rings;
     std::vector<std::array<int, 8>> cells;  // filled cells: corner nodes, x fastest, then y, then z
     std::vector<std::array<int, 3>>
-        faces;          // triangles of nodes, where the body is a sheet or a net of springs
-    float spacing = 0;  // m, of the grid; elsewhere the mean length of the springs
-    float damping = 0;  // 1/s, of velocities
-    float link_damping =
-        0;  // s: each spring resists its stretching with this × stiffness, N s/m; so do hinges
+        faces;               // triangles of nodes, where the body is a sheet or a net of springs
+    float spacing = 0;       // m, of the grid; elsewhere the mean length of the springs
+    float damping = 0;       // 1/s, of velocities
+    float link_damping = 0;  // s: springs and hinges resist their change with this × stiffness
 
     std::size_t count() const { return positions.size(); }
     /// The springs of its grid; null where it has none.

@@ -5,7 +5,7 @@ layout(std140, binding = pass_block) uniform Uniforms { Pass pass; };
 layout(binding = positions_unit) uniform Floats positions;   // m; w: 1/kg, below 0 where there is no node
 layout(binding = velocities_unit) uniform Floats velocities;  // m/s; w: number of a guide, below 0 for none
 layout(binding = traits_unit) uniform usamplerBuffer traits;   // of a slot: two words of shares; area and cover, as floats' bits
-layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; then of hinges, in pairs: the three others, and 1 for an end; stiffness, rest, area_square; or strengths
+layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; behind them of hinges; or strengths
 layout(binding = guides_unit) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
 layout(binding = corners_unit) uniform samplerBuffer corners;   // of polygons
 layout(binding = distances_unit) uniform samplerBuffer distances; // of fields, one after the other
@@ -67,6 +67,7 @@ vec3 toward(vec3 p, int l) { return at(positions, other(l)).xyz - p; }
 #endif
 vec3 passing(vec3 v, int l) { return velocity_of(at(velocities, other(l))) - v; }
 
+// In pairs: the three others, and 1 for an end; stiffness, rest, area_square.
 vec4 hinge_part(int h, int part) { return texelFetch(ties, (LINKS + 2 * h + part) * SLOTS + id); }
 int hinge_other(int h, int n) { return floatBitsToInt(hinge_part(h, 0)[n]); }
 bool hinge_end(int h) { return hinge_part(h, 0).w > 0; }

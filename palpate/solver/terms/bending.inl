@@ -16,7 +16,7 @@ struct Four {
     Real3 from, to, left, right;
 };
 
-// What a hinge's nodes have, counted from what this node has. The others are in the order in which a backend knows them.
+// What a hinge's nodes have, counted from what this node has; the others are in the order of an OwnHinge.
 FN Four four(int h, Real3 first, Real3 second, Real3 third) {
     Real3 none = Real3(0.0f, 0.0f, 0.0f);
     Four nodes;
@@ -67,7 +67,7 @@ ASIDE Real3 bending_force(Real3 position) {
     return force;
 }
 
-// Of the angle, which half a turn ends.
+// cos(θ/2): by how much the bend grows with the angle.
 FN Real half_cosine(Real bend) {
     Real square = max(Real(1.0f) - Real(0.25f) * bend * bend, Real(0.0f));
     return square * inversesqrt(square + Real(1e-20f));
@@ -87,7 +87,7 @@ ASIDE Real3 bending_stiffness_times(Node node) {
     return force;
 }
 
-// J, of a stiffness of 1 N m, from anywhere on.
+// J, for a stiffness of 1 N m and but for a constant.
 FN Real folding_energy(Real bend, Real rest) {
     Real half_sine = max(min(Real(0.5f) * bend, Real(1.0f)), Real(-1.0f));
     return Real(-4.0f) * half_cosine(bend) - Real(2.0f) * rest * asin(half_sine);
