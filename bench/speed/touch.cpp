@@ -48,7 +48,7 @@ std::vector<Mesh> skin_and_brain(int skin_faces, int brain_faces) {
                               fmt::format("surface.brain.faces={}", brain_faces)};
     Models made = build(read_scene("catheter", changes));
     std::vector<Mesh> list;
-    for (Still& still : made.stills) list.push_back(std::move(still.surface));
+    for (StaticSurface& still : made.static_surfaces) list.push_back(std::move(still.surface));
     return list;
 }
 

@@ -29,7 +29,7 @@ std::optional<Box> box_around(const Polygon& polygon) {
         for (vec3 p : corners) box.include(p);
     return box.empty() ? std::nullopt : std::optional(box_around(box));
 }
-// It reaches three cells beyond its mesh.
+// The field extends three cells beyond its mesh.
 std::optional<Box> box_around(const DistanceField& field) {
     const vec3 first = field.origin + 3 * field.spacing;
     return box_around(Bounds{first, first + field.spacing * vec3(field.dims - 7)});

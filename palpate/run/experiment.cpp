@@ -14,18 +14,18 @@ namespace palpate {
 namespace {
 
 constexpr long frames_between_good = 30;
-constexpr std::size_t most_good = 5;           // so that the first of them is about two seconds old
-constexpr std::size_t most_inputs = 500'000;   // of a recording: hours of them
+constexpr std::size_t most_good = 5;           // so the oldest is about two seconds old
+constexpr std::size_t most_inputs = 500'000;   // of a recording: hours
 constexpr std::size_t most_samples = 60 * 60;  // of a report's curves
 
 std::string key_of(const Change& change) { return change.substr(0, change.find('=')); }
 
-// What has no say in a body's surface, in how it hangs, or in what else there is to see.
+// Keys that do not affect surfaces, embeddings or anything else that is drawn.
 bool leaves_shapes(const Change& change) {
     const std::string key = key_of(change), last = key.substr(key.rfind('.') + 1);
     if (key.starts_with("simulation.") || key == "wind" || key.starts_with("wind.")) return true;
     if (key.find(".touch.") != std::string::npos) return true;
-    if (key.starts_with("collider."))  // planes and balls are drawn as they are at the moment
+    if (key.starts_with("collider."))  // planes and balls are drawn from their present values
         return last == "friction" || last == "margin" || key.find(".plane.") != std::string::npos ||
                key.find(".sphere.") != std::string::npos;
     for (const char* one : {"youngs_modulus", "stiffness", "springs", "structural", "shear", "flexion",
@@ -45,7 +45,7 @@ bool same_shapes(const std::vector<Change>& a, const std::vector<Change>& b) {
 
 bool same_nodes(const Body& a, const Body& b) { return a.name == b.name && a.positions == b.positions; }
 
-// Changes with new ones, which take the place of those of the same key.
+// Merges changes: new ones replace those of the same key.
 std::vector<Change> with(std::vector<Change> changes, const std::vector<Change>& more) {
     for (const Change& one : more) {
         std::erase_if(changes, [&](const Change& old) { return key_of(old) == key_of(one); });
@@ -68,7 +68,8 @@ float stiffest(const Body& body) {
 
 Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& progress) {
     Prepared prepared{std::move(source), std::move(changes), {}, {}};
-    prepared.source.folder = std::filesystem::absolute(prepared.source.folder / ".");  // recordings travel
+    prepared.source.folder = std::filesystem::absolute(prepared.source.folder / ".");  // recordings may be
+                                                                                       // moved
     prepared.scene = parse_scene(prepared.source, prepared.changes);
     check_devices(prepared.scene);
     prepared.models = build(prepared.scene, progress);
@@ -78,14 +79,14 @@ Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& 
 Prepared prepare(Models models) {
     Scene scene;
     scene.simulation = models.simulation;
-    scene.simulation.colliders.clear();  // they are recipes there
+    scene.simulation.colliders.clear();  // there they are recipes
     auto add = [](std::vector<BodyRecipe>& recipes, const std::string& name, const Mesh& surface) {
         BodyRecipe& recipe = recipes.emplace_back();
         recipe.name = name;
         recipe.sheet = soundness(surface).open_edges > 0;
     };
     for (const Model& model : models.models) add(scene.bodies, model.body.name, model.surface);
-    for (const Still& still : models.stills) add(scene.surfaces, still.name, still.surface);
+    for (const StaticSurface& still : models.static_surfaces) add(scene.surfaces, still.name, still.surface);
     for (const Collider& collider : models.simulation.colliders)
         scene.colliders.emplace_back().collider = collider;
     models.pivots.resize(scene.colliders.size(), vec3(0));
@@ -111,15 +112,15 @@ Strength strength_for(const Body& body) {
         widest = std::max(widest, body.area[i] * inverse);
     }
     const float most =
-        1.5f * stiffest(body) * lightest;  // 1/s², the square of the frequency that a hand may add
+        1.5f * stiffest(body) * lightest;  // 1/s², by how much a hand may raise the square of the frequency
     return {most, widest > 0 ? most / widest : 0};
 }
 
-// ---- what it is made of ----
+// ---- making it ----
 
 namespace {
 
-// Of bodies that are still what they were: it takes the longest to find out.
+// Frequencies of unchanged bodies are taken over, because they take longest to compute.
 std::vector<double> known_frequencies(const Models& models, const Models& before, const Play& play) {
     std::vector<double> known(models.models.size(), 0);
     for (std::size_t m = 0; m < known.size(); ++m)
@@ -136,7 +137,7 @@ std::vector<double> known_frequencies(const Models& models, const Models& before
 Experiment::Experiment(Prepared prepared, const gl::Context* context)
     : Experiment(std::move(prepared), context, nullptr) {}
 
-// `other`: knows frequencies of bodies, perhaps of the same.
+// `other`: may know the frequencies of the same bodies.
 Experiment::Experiment(Prepared prepared, const gl::Context* context, const Experiment* other)
     : context_(context),
       history_{{prepared.changes, {}}},
@@ -149,7 +150,7 @@ Experiment::Experiment(Prepared prepared, const gl::Context* context, const Expe
 
 void Experiment::require_text() const {
     if (!has_text())
-        throw Error("no text of a scene, so nothing can be changed by a line, compared, saved or recorded",
+        throw Error("a scene without a text, which cannot be changed by key, compared, saved or recorded",
                     source().name, "pin its nodes; or describe it by a scene");
 }
 
@@ -184,7 +185,7 @@ void Experiment::take(Made made) {
     trouble_.clear();
 }
 
-// Bodies of the same nodes go on from where they are. A node that is held fast now has no speed.
+// Bodies with the same nodes keep their state. A node that is pinned now has zero velocity.
 void Experiment::carry_over(Made& made) {
     const std::vector<State> before = play().save();
     std::vector<State> states = made.play->save();
@@ -201,7 +202,7 @@ void Experiment::carry_over(Made& made) {
     made.play->take_probes(*made_.play);
 }
 
-// Whether what its tools touch and hold is what they did.
+// Whether its tools can continue with what they touch and hold.
 bool Experiment::fits(const Made& made) const {
     const auto &now = made.models->models, &before = models().models;
     if (made.scene->tools != scene().tools || now.size() != before.size()) return false;
@@ -209,9 +210,10 @@ bool Experiment::fits(const Made& made) const {
         if (!same_nodes(now[m].body, before[m].body) ||
             now[m].surface.triangles != before[m].surface.triangles)
             return false;
-    return std::ranges::equal(made.models->stills, models().stills, [](const Still& a, const Still& b) {
-        return a.surface.triangles == b.surface.triangles;
-    });
+    return std::ranges::equal(made.models->static_surfaces, models().static_surfaces,
+                              [](const StaticSurface& a, const StaticSurface& b) {
+                                  return a.surface.triangles == b.surface.triangles;
+                              });
 }
 
 void Experiment::set(const Setting& setting) {
@@ -244,7 +246,7 @@ void Experiment::change(const std::vector<Change>& changes, bool again) {
     add_to_history(all);
 }
 
-// What was undone is gone.
+// Changes that were undone are dropped.
 void Experiment::add_to_history(Setting setting) {
     history_.resize(at_ + 1);
     history_.push_back(std::move(setting));
@@ -291,10 +293,10 @@ void Experiment::pin(std::size_t body, const std::vector<int>& nodes, bool fast)
     for (std::size_t i = 0; i < held.size(); ++i) held[i] = !(inverse_mass[i] > 0);
     for (const MovedNodes& moved : models().moves)
         if (moved.body == body)
-            for (int node : moved.nodes) held[std::size_t(node)] = false;  // by the motion, not by a pin
+            for (int node : moved.nodes) held[std::size_t(node)] = false;  // held by the motion, not by a pin
     for (int node : nodes) {
         if (!has_text() && !fast && !(free_[body][std::size_t(node)] > 0))
-            throw Error(fmt::format("node {} was made without a mass, so nothing can let go of it", node),
+            throw Error(fmt::format("node {} was made with infinite mass, so it cannot be released", node),
                         "body " + models().models[body].body.name,
                         "pin it here rather than where it is made");
         held[std::size_t(node)] = fast;
@@ -324,7 +326,7 @@ double Experiment::stable_step(std::size_t body) const {
 
 // ---- going on ----
 
-bool Experiment::advance(const Hands& hands) {
+bool Experiment::advance(const Interaction& hands) {
     if (!trouble_.empty()) return false;
     if (frame_ % frames_between_good == 0) remember();
     if (!hands.empty()) record({done_.frames, hands});
@@ -372,11 +374,11 @@ Recording Experiment::recording() const {
 
 bool Experiment::replay(const Recording& recording) {
     require_text();
-    Hands hands;
+    Interaction hands;
     for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= done_.frames;
          ++replayed_) {
         const auto& what = recording.inputs[replayed_].what;
-        if (const auto* some = std::get_if<Hands>(&what)) {
+        if (const auto* some = std::get_if<Interaction>(&what)) {
             hands = *some;
         } else if (const auto* set_to = std::get_if<SetChanges>(&what)) {
             set({set_to->changes, {}});
@@ -387,14 +389,14 @@ bool Experiment::replay(const Recording& recording) {
     }
     if (done_.frames >= recording.frames || !trouble_.empty()) return false;
     if (!takes(hands))
-        throw Error(fmt::format("frame {} holds what no hand here can do", done_.frames), "the recording",
-                    "replay it with the files that it was made with");
+        throw Error(fmt::format("frame {} has an interaction that the bodies cannot take", done_.frames),
+                    "the recording", "replay it with the files that it was made with");
     advance(hands);
     return true;
 }
 
-bool Experiment::takes(const Hands& hands) const {
-    constexpr float most = 1e4f;  // times as strong as usual: a step may be a hundredth then, and no less
+bool Experiment::takes(const Interaction& hands) const {
+    constexpr float most = 1e4f;  // times the usual stiffness, with which the step is about a hundredth
     const auto& models = this->models().models;
     float pressure = 0;
     for (const Model& model : models) pressure = std::max(pressure, strength_for(model.body).pressure);

@@ -13,9 +13,9 @@
 
 namespace palpate {
 
-/// A scene that was built, and what of: made on any thread, because it may take long.
+/// A built scene with its source. It may be made on any thread, because it may take long.
 struct Prepared {
-    SceneText source;  // without a text where a program made the models
+    SceneText source;  // without a text if a program made the models
     std::vector<Change> changes;
     Scene scene;
     Models models;
@@ -24,74 +24,75 @@ struct Prepared {
 /// Throws Error.
 Prepared prepare(SceneText source, std::vector<Change> changes, const Progress& progress = {});
 
-/// What a program made. Its scene is what goes without saying: colours, tools and paths may be put into it.
+/// From models that a program made. The scene has default values; colours, tools and paths may be added to
+/// it.
 Prepared prepare(Models models);
-/// A body and the surface that is hung on it.
+/// From a body and a surface that follows it.
 Prepared prepare(Body body, Mesh surface);
 
-/// How strong a hand is that reaches into a body: as strong as the springs of its heaviest nodes, so that it
-/// moves what it takes hold of, and weaker with light ones, so that the step need not be much shorter.
+/// The stiffness of the user's hand on a body: like the springs of its heaviest nodes, so that it moves what
+/// it holds, and less for light nodes, so that the step need not be much shorter.
 struct Strength {
-    float pull = 0;      // N/m, of a drag of one node, for each kg of it
+    float pull = 0;      // N/m per kg of a node that is dragged
     float pressure = 0;  // Pa/m, of a tip
 };
 Strength strength_for(const Body& body);
 
-/// A scene that somebody plays with: it goes on frame by frame, whatever is changed meanwhile. Nothing in it
-/// depends on a clock, a window or a thread, so the same inputs at the same frames lead to the same state, to
-/// the bit. A step above the stability bound is accepted here: what it does can be looked at and undone.
+/// An interactive scene: it advances frame by frame, and can be changed in between. Nothing in it depends on
+/// a clock, a window or a thread, so the same inputs at the same frames lead to the same state, to the bit. A
+/// step above the stability limit is accepted here: its effect can be watched and undone.
 ///
-/// What was made without a text can be pinned, undone and restarted as well. But change(), beside(),
-/// recording() and replay() speak of a text, and throw Error where there is none.
+/// An experiment without a scene text can be pinned, undone and restarted as well. But change(), beside(),
+/// recording() and replay() need a text, and throw Error without one.
 class Experiment {
  public:
-    /// On a GPU, in that context. Throws Error.
+    /// `context`: for a backend on the GPU. Throws Error.
     explicit Experiment(Prepared prepared, const gl::Context* context = nullptr);
     Experiment(Experiment&&) = default;
     Experiment& operator=(Experiment&&) = delete;
 
-    /// One frame of 1/60 s. False if the motion blew up, now or before: then all is as it was before that
-    /// frame, and trouble() says so.
-    bool advance(const Hands& hands = {});
+    /// Advances by one frame of 1/60 s. False if the motion has diverged, now or before: then the state is
+    /// that before the frame, and trouble() says so.
+    bool advance(const Interaction& hands = {});
 
-    /// Another one with some more changes, that goes on from where this one is; hands may take hold of both.
+    /// A copy with more changes, which continues from the present state; an interaction may act on both.
     std::unique_ptr<Experiment> beside(const std::vector<Change>& more) const;
 
-    /// Whether bodies can take that beside the scene's own tools: nodes that are there, and
-    /// forces that are not out of all proportion to what they are made of.
-    bool takes(const Hands& hands) const;
+    /// Whether bodies can take that interaction besides the scene's own tools: its nodes exist, and its
+    /// forces are in proportion to their material.
+    bool takes(const Interaction& hands) const;
 
-    /// Why it does not go on, in one line; empty while it does.
+    /// Why it does not advance, in one line; empty while it does.
     const std::string& trouble() const { return trouble_; }
 
-    // ---- changes: all of them keep where things are, as far as the same nodes are still there ----
+    // ---- changes: all of them keep the state, as far as the same nodes still exist ----
 
-    /// Replaces what was changed of the same keys before. Throws Error, and then all is as it was.
-    /// `again`: it goes with the change before, as one movement of a slider does, and is undone with it.
+    /// Changes keys, replacing earlier changes of the same keys. Throws Error; then nothing has changed.
+    /// `again`: it belongs to the change before, as in one movement of a slider, and is undone with it.
     void change(const std::vector<Change>& changes, bool again = false);
 
     bool can_undo() const { return at_ > 0; }
-    std::size_t changes_made() const { return at_; }  // that undo() could take back
+    std::size_t changes_made() const { return at_; }  // that undo() can take back
     bool can_redo() const { return at_ + 1 < history_.size(); }
     void undo();
     void redo();
 
-    /// Everything back to rest, at time 0; what was changed stays changed.
+    /// Resets everything to rest, at time 0; changes are kept.
     void restart();
 
-    /// Where things were about two seconds ago, or before trouble; what was changed since is changed back.
+    /// Returns to the state of about two seconds ago, or before trouble, and takes back later changes.
     bool can_return() const { return !good_.empty(); }
     void return_to_good();
 
-    /// Holds a node fast where it is, or lets go of it.
+    /// Pins nodes where they are, or releases them.
     void pin(std::size_t body, const std::vector<int>& nodes, bool fast);
     bool is_pinned(std::size_t body, int node) const;
 
-    // ---- what there is ----
+    // ---- contents ----
 
     const SceneText& source() const { return done_.scene; }
     bool has_text() const { return !source().text.empty(); }
-    void require_text() const;  // throws Error where there is none
+    void require_text() const;  // throws Error if there is none
     const std::vector<Change>& changes() const { return history_[at_].changes; }
     const Scene& scene() const { return *made_.scene; }
     const Models& models() const { return *made_.models; }
@@ -100,28 +101,28 @@ class Experiment {
     double time() const;    // s
     Energy energy() const;  // of all bodies
 
-    /// The longest step that keeps a body's small motions bounded, untouched, s.
+    /// The stability limit of the step for a body that nothing touches, s.
     double stable_step(std::size_t body) const;
 
-    /// Another one whenever a surface, or how it hangs on its nodes, is another. Experiments share none.
+    /// The identity of all surfaces and embeddings: a new one whenever one of them changes. Each experiment
+    /// has its own.
     using Shapes = std::shared_ptr<const char>;
     const Shapes& shapes() const { return shapes_; }
 
     // ---- its inputs ----
 
-    /// All that has been done to it since it began, or was restarted; see replay(). Throws Error if that was
-    /// too much to keep.
+    /// All inputs since it began or was restarted; see replay(). Throws Error if there were too many to keep.
     Recording recording() const;
 
-    /// Does what a recording did at the coming frame, and goes on by that frame. False after its last, or if
-    /// the motion has blown up for good.
+    /// Applies a recording's inputs of the next frame, and advances by that frame. False after its last
+    /// frame, or if the motion has diverged for good.
     bool replay(const Recording& recording);
 
-    /// Of all positions and velocities, to the bit.
+    /// A hash of all positions and velocities, to the bit.
     std::string fingerprint() const;
 
  private:
-    // What was changed: of the text; or without one, the nodes that are pinned, a list a body.
+    // What was changed: keys of the text; or without a text, the pinned nodes, one list for each body.
     struct Setting {
         std::vector<Change> changes;
         std::vector<std::vector<int>> pinned;
@@ -136,7 +137,7 @@ class Experiment {
         std::unique_ptr<Scene> scene;
         std::unique_ptr<Models> models;
         std::unique_ptr<Report> report;
-        std::unique_ptr<Play> play;  // goes before what it refers to
+        std::unique_ptr<Play> play;  // is destroyed before what it refers to
     };
     Experiment(Prepared prepared, const gl::Context* context, const Experiment* other);
     Made make(const Setting& setting) const;
@@ -150,18 +151,19 @@ class Experiment {
     void remember();
 
     const gl::Context* context_;
-    std::vector<Setting> history_;  // what holds after each change
+    std::vector<Setting> history_;  // the setting after each change
     std::size_t at_ = 0;            // in the history
     Made made_;
-    std::vector<std::vector<float>> free_;  // inverse masses without pins, a list a body, where no text is
+    std::vector<std::vector<float>> free_;  // inverse masses without pins, one list for each body, if there
+                                            // is no text
     std::string trouble_;
     long frame_ = 0;         // since time 0
-    std::deque<Good> good_;  // the latest last
+    std::deque<Good> good_;  // in order of time
     Shapes shapes_ = std::make_shared<char>();
 
     bool records_;
-    Recording done_;            // to it so far
-    std::size_t replayed_ = 0;  // inputs that were done again
+    Recording done_;            // what was done to it so far
+    std::size_t replayed_ = 0;  // how many inputs were replayed
 };
 
 }  // namespace palpate

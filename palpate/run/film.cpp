@@ -10,9 +10,9 @@
 namespace palpate {
 namespace {
 
-// H.264 halves the colour's resolution, which wants even sides: an odd last row or column is cropped.
+// H.264 halves the resolution of colour, which needs even sides: an odd last row or column is cropped.
 std::vector<std::string> command(const std::filesystem::path& path, int width, int height, int rate) {
-    // -xerror: without it, ffmpeg ends in peace after a disk was full.
+    // -xerror: without it, ffmpeg reports success when the disk is full.
     std::istringstream text(
         fmt::format("ffmpeg -v error -xerror -y "
                     "-f rawvideo -pix_fmt rgba -s {}x{} -r {} -i - "
@@ -21,7 +21,7 @@ std::vector<std::string> command(const std::filesystem::path& path, int width, i
                     "-f mp4 -movflags +faststart",
                     width, height, rate));
     std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
-    words.push_back("file:" + path.string());  // whatever its name looks like
+    words.push_back("file:" + path.string());  // so that no name looks like an option
     return words;
 }
 

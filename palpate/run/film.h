@@ -7,12 +7,12 @@
 
 namespace palpate {
 
-/// Throws Error if no film of so many pixels can be written there: without ffmpeg, under a name that does not
-/// end in ".mp4", or if it is smaller than 16 x 16.
+/// Throws Error if a film of that size cannot be written there: without ffmpeg, if the name does not end in
+/// ".mp4", or if it is smaller than 16 x 16.
 void check_film(const std::filesystem::path& path, int width, int height);
 
-/// An MP4 film written through the program ffmpeg. It takes its final name when finish() is called; without
-/// that nothing is left behind.
+/// An MP4 film, encoded by the program ffmpeg. It gets its final name in finish(), and is removed without
+/// that.
 class Film {
  public:
     /// Throws Error as check_film does.
@@ -23,7 +23,7 @@ class Film {
 
  private:
     Unfinished file_;
-    Pipe ffmpeg_;  // ends before its file goes
+    Pipe ffmpeg_;  // is destroyed before the file
 };
 
 }  // namespace palpate

@@ -10,10 +10,10 @@
 namespace palpate {
 namespace {
 
-// How far about the bodies' box other things count, in diagonals of it: a part of what is near, the nearest
-// point of what is within reach, and of what a body may fall on.
+// How far around the bodies' bounding box other things count, in diagonals of it: the part that is near, the
+// nearest point of what is within reach, and the ground on which a body may fall.
 constexpr float near = 0.5f, reach = 2, fall = 6;
-constexpr float margin = 1.1f;  // times as much as has to be seen
+constexpr float margin = 1.1f;  // a border around what must be seen
 
 using Points = std::vector<vec3>;
 
@@ -32,9 +32,9 @@ std::array<vec3, 8> corners(const Bounds& box) {
     return all;
 }
 
-// ---- what there is to see ----
+// ---- what shall be seen ----
 
-// A body without a surface to be seen shows its nodes.
+// A body without a surface counts by its nodes.
 const Points& shown(const Model& model) {
     return model.surface.positions.empty() ? model.body.positions : model.surface.positions;
 }
@@ -44,7 +44,7 @@ Points subjects(const Scene& scene, const Models& made) {
     Points points;
     auto add = [&](const Points& more) { points.insert(points.end(), more.begin(), more.end()); };
     for (const Model& model : made.models) add(shown(model));
-    for (const Still& still : made.stills) add(still.surface.positions);
+    for (const StaticSurface& still : made.static_surfaces) add(still.surface.positions);
     for (std::size_t i = 0; i < made.moves.size(); ++i) {
         const MovedNodes& moved = made.moves[i];
         const Points& rest = made.models[moved.body].body.positions;
@@ -56,7 +56,7 @@ Points subjects(const Scene& scene, const Models& made) {
     return points;
 }
 
-// Where a collider is in the course of time.
+// The motion of a collider over time.
 std::vector<Pose> poses(const ColliderRecipe& recipe, vec3 pivot) {
     if (recipe.path.empty()) return {Pose{}};
     std::vector<Pose> all;
@@ -67,13 +67,13 @@ std::vector<Pose> poses(const ColliderRecipe& recipe, vec3 pivot) {
     return all;
 }
 
-// From where the positions of a tool's path are counted.
+// The origin of the positions of a tool's path.
 vec3 origin_of(const ToolRecipe& tool, const Models& made) {
     if (tool.from) {
         std::vector<Skin> skins;
         for (const Model& model : made.models)
             skins.push_back({model.surface.positions, {}, &model.surface.triangles});
-        for (const Still& still : made.stills)
+        for (const StaticSurface& still : made.static_surfaces)
             skins.push_back({still.surface.positions, {}, &still.surface.triangles});
         const vec3 along = glm::normalize(tool.along);
         return *tool.from + way_to_touch(*tool.from, along, tool.radius, skins).value_or(0) * along;
@@ -88,11 +88,11 @@ vec3 origin_of(const ToolRecipe& tool, const Models& made) {
     return std::isfinite(nearest.x) ? nearest : vec3(0);
 }
 
-// All that is to be in the picture.
+// Everything that shall be in the picture.
 struct Seen {
     Points points;
     Bounds box;           // of the bodies
-    vec3 tips = vec3(0);  // how far the tips are from its middle on the average, m
+    vec3 tips = vec3(0);  // the mean offset of the tips from its centre, m
 
     Seen(const Scene& scene, const Models& made);
 
@@ -106,7 +106,7 @@ struct Seen {
 };
 
 Seen::Seen(const Scene& scene, const Models& made) : points(subjects(scene, made)), box(bounds(points)) {
-    if (box.empty()) near_ = reach_ = {vec3(-1e6f), vec3(1e6f)};  // then all the rest is what there is
+    if (box.empty()) near_ = reach_ = {vec3(-1e6f), vec3(1e6f)};  // then everything else counts
     if (!box.empty()) {
         const float size = glm::length(box.size());
         near_ = grown(box, near * size);
@@ -124,7 +124,7 @@ Seen::Seen(const Scene& scene, const Models& made) : points(subjects(scene, made
     if (box.empty()) box = bounds(points);
 }
 
-// As much of it as is near, and its nearest point.
+// The part of it that is near, and its nearest point.
 void Seen::add(const Bounds& thing) {
     const Bounds part{glm::max(thing.low, near_.low), glm::min(thing.high, near_.high)};
     if (glm::all(glm::lessThanEqual(part.low, part.high)))
@@ -133,7 +133,7 @@ void Seen::add(const Bounds& thing) {
     if (holds(reach_, nearest)) points.push_back(nearest);
 }
 
-// Where the bodies would stand on it.
+// The area on which the bodies would stand.
 void Seen::add(const Plane& plane, const Pose& at) {
     if (box.empty()) return;
     const vec3 normal(at.turn * dvec3(plane.normal));
@@ -176,9 +176,10 @@ void Seen::add_tips(const Scene& scene, const Models& made) {
     if (count > 0) tips /= float(count);
 }
 
-// ---- from where ----
+// ---- the eye ----
 
-// Towards the eye, unit. `axes`: to the right, up and towards the viewer of what stands upright.
+// The direction to the eye, unit. `axes`: right, up and towards the viewer, for something that stands
+// upright.
 vec3 side(const Seen& seen, const mat3& axes) {
     vec3 low(INFINITY), high(-INFINITY);
     for (vec3 p : seen.points) {
@@ -194,8 +195,8 @@ vec3 side(const Seen& seen, const mat3& axes) {
     return axes * glm::normalize(way);
 }
 
-// Where the eye is that looks along -`back` and sees all points, as near as it can: each edge of the picture
-// touches one of them, or the two that matter less leave room on both sides alike. `fixed`: what it looks at.
+// The nearest eye that looks along -`back` and has all points in its view frustum: each side of the frustum
+// touches one of them, or there is equal room on two opposite sides. `fixed`: the point to look at.
 Camera fitted(Camera camera, const Points& points, vec3 back, float aspect, std::optional<vec3> fixed) {
     const vec3 middle = fixed.value_or(bounds(points).centre());
     vec3 aside = glm::cross(camera.up, back);
@@ -204,7 +205,8 @@ Camera fitted(Camera camera, const Points& points, vec3 back, float aspect, std:
     const vec3 right = glm::normalize(aside), up = glm::cross(back, right);
     const float slope = std::tan(0.5f * glm::radians(camera.angle)) / margin;
     const vec2 slopes(slope * aspect, slope);
-    // How far the eye must be for the points to lie before the left, lower, right and upper edge.
+    // How far the eye must be for the points to lie within the left, lower, right and upper plane of the
+    // frustum.
     vec2 low(-INFINITY), high(-INFINITY);
     for (vec3 p : points) {
         const vec2 off = vec2(glm::dot(p - middle, right), glm::dot(p - middle, up)) / slopes;
@@ -219,7 +221,7 @@ Camera fitted(Camera camera, const Points& points, vec3 back, float aspect, std:
     return camera;
 }
 
-// What the scene says to look at; nothing if it does not.
+// What the scene looks at; nothing if it does not say.
 std::optional<vec3> looked_at(const Scene& scene, const Models& made) {
     if (const auto* point = std::get_if<vec3>(&scene.camera.look_at)) return *point;
     const auto* name = std::get_if<std::string>(&scene.camera.look_at);
@@ -227,7 +229,7 @@ std::optional<vec3> looked_at(const Scene& scene, const Models& made) {
     std::optional<vec3> at;
     for (const Model& model : made.models)
         if (model.body.name == *name) at = bounds(shown(model)).centre();
-    for (const Still& still : made.stills)
+    for (const StaticSurface& still : made.static_surfaces)
         if (still.name == *name) at = bounds(still.surface).centre();
     return at;
 }

@@ -4,15 +4,15 @@
 
 namespace palpate {
 
-/// From where a scene is looked at, at what, in a picture `aspect` times as wide as high.
+/// The camera of a scene, for pictures with this aspect ratio (width over height).
 ///
-/// What the scene leaves out is found: `look_at` is the middle of what there is to see, and the eye stands
-/// where all of it is in the picture. That is the bodies and the surfaces that nothing moves, at rest and
-/// where prescribed motion takes them; and of colliders, grounds and tips what lies near those or is about to
-/// meet them. Of an endless or far thing no more than that counts, so that none makes a body a dot. The eye
-/// looks from the front, somewhat from the right and from above; along the shorter side of what is deep; from
-/// higher up on what lies flat; and from the side from which tips come. An orthographic picture is as high as
-/// the same angle shows.
+/// What the scene does not specify is chosen: `look_at` is the centre of everything that shall be seen, and
+/// the eye is placed so that all of it is in the view frustum. This is the bodies and static surfaces, at
+/// rest and where prescribed motion takes them; and those parts of colliders, grounds and tips that are near
+/// or about to meet them. Only that part of endless or distant things counts, so that bodies do not shrink to
+/// a dot. The eye looks from the front, somewhat from the right and from above; along the shorter side of
+/// something deep; from higher up at something flat; and from the side from which tips come. The height of an
+/// orthographic picture is that of the same angle at look_at.
 Camera camera_of(const Scene& scene, const Models& made, float aspect);
 
 }  // namespace palpate

@@ -32,7 +32,7 @@ void Grip::take_hold(const std::vector<Model>& models, const World& world) {
         }
     }
     if (node_ < 0)
-        throw Error("there is no node to drag that is not pinned", "tool " + recipe_.name,
+        throw Error("all nodes that could be dragged are pinned", "tool " + recipe_.name,
                     "name another body, or pin less of it");
     if (recipe_.relative) origin_ = held;
 }

@@ -8,20 +8,20 @@
 
 namespace palpate {
 
-/// A tool that takes hold of one node and drags it along a scripted path; at the path's end it lets go.
+/// A tool that grasps one node and drags it along a scripted path; at the path's end it releases it.
 class Grip {
  public:
     explicit Grip(const ToolRecipe& recipe) : recipe_(recipe) {}
 
-    /// The push for the frame from `time` on, or none while the tool is away. At the path's first time it
-    /// takes hold of the nearest node that can move. Throws Error if there is none.
+    /// The action for the frame from `time` on, or none while the tool is absent. At the path's first time it
+    /// grasps the nearest free node. Throws Error if there is none.
     std::optional<NodePush> drag(double time, double frame, const std::vector<Model>& models,
                                  const World& world);
 
-    /// The number of the body that it has hold of.
+    /// The index of the body that it holds.
     std::size_t body() const { return body_; }
 
-    /// Where it pulls to at a time within its path, m.
+    /// The point to which it pulls at a time within its path, m.
     vec3 centre(double time) const { return origin_ + position(recipe_.path, time); }
 
  private:

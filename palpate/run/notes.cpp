@@ -48,7 +48,7 @@ float depth(const Box& box, vec3 p) {
 float depth(const Polygon&, vec3) { return -infinite; }
 float depth(const DistanceField& field, vec3 p) { return -field.at(p); }
 
-// How fast any point of a collider goes at most, m/s.
+// The greatest speed of any point of a collider, m/s.
 float fastest(const Path& path, float reach) {
     float speed = 0;
     for (std::size_t i = 1; i < path.size(); ++i) {
@@ -60,8 +60,8 @@ float fastest(const Path& path, float reach) {
     return speed;
 }
 
-// A node that goes further in one step than half an obstacle's thickness can come out on its other side.
-// Planes have no other side, and polygons look at the whole way of a step.
+// Tunnelling: a node that moves farther in one step than half an obstacle's thickness can come out on the
+// other side. Planes have no other side, and polygons use continuous collision detection.
 void look_at_thin_obstacles(const Scene& scene, const Models& made, const Report& report,
                             std::vector<std::string>& notes) {
     for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c) {
@@ -147,7 +147,7 @@ void look_at_steps(const Scene& scene, const Report& report, std::vector<std::st
 }  // namespace
 
 std::size_t held_at_start(const Scene& scene, const Models& made, std::size_t collider, std::size_t body) {
-    constexpr float to_speak_of = 0.1f;  // of the spacing: less is lifted out without harm
+    constexpr float to_speak_of = 0.1f;  // of the spacing: less is pushed out without harm
     const Collider& one = made.simulation.colliders[collider];
     const Path& path = scene.colliders[collider].path;
     const Pose at = path.empty() ? Pose{} : pose(path, 0);
@@ -193,7 +193,7 @@ std::string how_to_ask_less(const Scene& scene, const Report& report) {
 }
 
 std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
-    constexpr float widest_gap = 0.7f;  // of the spacing: half the way across a square of nodes
+    constexpr float widest_gap = 0.7f;  // of the spacing: half the diagonal of a square of nodes
     std::vector<std::string> notes = made.notes;
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const Body& body = made.models[m].body;

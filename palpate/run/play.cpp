@@ -31,12 +31,12 @@ Report::Body describe(const Model& model) {
     return body;
 }
 
-// What a cage carries may be open; every other surface that is no cloth encloses a volume.
+// A surface in a cage may be open; every other one except cloth encloses a volume.
 bool is_sheet(const BodyRecipe& recipe, const Mesh& surface) {
     return recipe.is_cloth() || (recipe.cage && soundness(surface).open_edges > 0);
 }
 
-// Where the nodes of a prescribed motion shall be at a time.
+// The places of the nodes of a prescribed motion at a time.
 std::vector<vec3> places(const MovedNodes& moved, const Path& path, const Body& body, double time) {
     const Pose at = pose(path, time);
     std::vector<vec3> to;
@@ -49,13 +49,13 @@ std::vector<vec3> places(const MovedNodes& moved, const Path& path, const Body& 
 
 }  // namespace
 
-// In the order of the acts: the scene's tools come first; then hands.
+// The scene's tools come first, then the interaction.
 struct Play::Acting {
     std::vector<Press> presses;
     std::vector<std::size_t> tool_of_press;
     std::vector<BodyPush> pushes;
     std::vector<std::size_t> tool_of_push;
-    std::vector<std::vector<vec3>> places;  // that the moves lead to
+    std::vector<std::vector<vec3>> places;  // the targets of the moves
     std::vector<BodyMove> moves;
     std::vector<Motion> colliders;
     vec3 wind = vec3(0);
@@ -80,14 +80,14 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
       made_(made),
       report_(report),
       world_(made.simulation, context),
-      skins_(made.models.size() + made.stills.size()),
+      skins_(made.models.size() + made.static_surfaces.size()),
       tools_(scene.tools.size()) {
     for (const Model& model : made.models) {
         const std::size_t m = world_.count();
         world_.add(model.body, m < frequencies.size() ? frequencies[m] : 0);
         report.bodies.push_back(describe(model));
     }
-    for (const Still& still : made.stills) {
+    for (const StaticSurface& still : made.static_surfaces) {
         Report::Body& body = report.bodies.emplace_back();
         body.name = still.name;
         body.vertices = still.surface.positions.size();
@@ -111,8 +111,8 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
         skins_[m].triangles = &surface.triangles;
         skins_[m].is_sheet = is_sheet(scene.bodies[m], surface);
     }
-    for (std::size_t s = 0; s < made.stills.size(); ++s) {
-        const Mesh& surface = made.stills[s].surface;
+    for (std::size_t s = 0; s < made.static_surfaces.size(); ++s) {
+        const Mesh& surface = made.static_surfaces[s].surface;
         skins_[models + s] = {surface.positions, surface.normals, &surface.triangles,
                               is_sheet(scene.surfaces[s], surface)};
     }
@@ -143,7 +143,8 @@ void Play::restore(const std::vector<State>& states) {
 
 void Play::take_tools(const Play& from) {
     if (from.handles_.size() != handles_.size())
-        throw Error("another number of tools", "the scene whose tools are taken over", "give both the same");
+        throw Error("a different number of tools", "the scene whose tools are taken over",
+                    "give both scenes the same tools");
     for (std::size_t t = 0; t < handles_.size(); ++t)
         if (const auto* tip = std::get_if<Tip>(&from.handles_[t])) {
             Tip same = *tip;
@@ -153,7 +154,7 @@ void Play::take_tools(const Play& from) {
             handles_[t] = *grip;
         }
     tools_ = from.tools_;
-    pushes_ = from.pushes_;
+    interaction_forces_ = from.interaction_forces_;
     time_ = from.time_;
 }
 
@@ -188,7 +189,7 @@ std::vector<Dent> Play::dents(std::size_t skin) const {
     return all;
 }
 
-// The probes feel the surfaces as they are at `time`, and guess how they go on.
+// The probes feel the surfaces as they are at `time`, and extrapolate.
 void Play::probe(double time, double seconds) {
     if (!probes_) return;
     skins();  // which have their own time
@@ -198,7 +199,7 @@ void Play::probe(double time, double seconds) {
             one->advance(time, seconds, skins_, !made_.models.empty());
 }
 
-bool Play::advance(double time, double seconds, const Hands& hands) {
+bool Play::advance(double time, double seconds, const Interaction& hands) {
     probe(time, seconds);
     const Acting on = acting(time, seconds, hands);
     {
@@ -212,7 +213,7 @@ bool Play::advance(double time, double seconds, const Hands& hands) {
     return true;
 }
 
-Play::Acting Play::acting(double time, double seconds, const Hands& hands) {
+Play::Acting Play::acting(double time, double seconds, const Interaction& hands) {
     Acting on;
     for (std::size_t t = 0; t < handles_.size(); ++t) {
         if (auto* tip = std::get_if<Tip>(&handles_[t])) {
@@ -267,19 +268,19 @@ void Play::map() const {
 void Play::record(const Acting& on, double time, double seconds) {
     std::vector<dvec3> impulses(handles_.size(), dvec3(0));
     tools_.assign(handles_.size(), std::nullopt);
-    // Sums over time are impulses; what hands feel is a mean force.
+    // The solver sums impulses; the interaction reports mean forces.
     const std::size_t tips = on.tool_of_press.size(), grips = on.tool_of_push.size();
-    pushes_ = {};
+    interaction_forces_ = {};
     for (std::size_t p = 0; p < on.presses.size(); ++p)
         if (p < tips)
             impulses[on.tool_of_press[p]] += stats_.reactions[p];
         else
-            pushes_.presses.push_back(stats_.reactions[p] / seconds);
+            interaction_forces_.presses.push_back(stats_.reactions[p] / seconds);
     for (std::size_t d = 0; d < on.pushes.size(); ++d)
         if (d < grips)
             impulses[on.tool_of_push[d]] += stats_.pushes[d];
         else
-            pushes_.pulls.push_back(stats_.pushes[d] / seconds);
+            interaction_forces_.pulls.push_back(stats_.pushes[d] / seconds);
     for (std::size_t t : on.tool_of_press) tools_[t] = {std::get<Tip>(handles_[t]).centre(time), {}};
     for (std::size_t d = 0; d < grips; ++d) {
         const auto& [body, push] = on.pushes[d];

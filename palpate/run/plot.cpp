@@ -13,7 +13,8 @@ namespace {
 
 constexpr double width = 800, panel_height = 260, left = 80, right = 30, top = 50, between = 70;
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73",
-                                   "#cc79a7", "#e69f00", "#56b4e9"};  // told apart by all eyes
+                                   "#cc79a7", "#e69f00", "#56b4e9"};  // distinguishable also with colour
+                                                                      // blindness
 
 // Ticks at round numbers that cover a range.
 struct Axis {
@@ -28,8 +29,7 @@ struct Axis {
     double part(double value) const { return (value - low) / (high - low); }
 };
 
-// Where a value lies on an axis, before the axis is stretched: nowhere (NaN) if that needs its logarithm and
-// it has none.
+// The unscaled position of a value on an axis; NaN for the logarithm of a value that is not above zero.
 double place(const Panel& panel, double value) {
     if (!panel.logarithmic) return value;
     return value > 0 ? std::log10(value) : std::nan("");
@@ -67,7 +67,7 @@ std::string line(double x1, double y1, double x2, double y2, const char* colour)
                        y1, x2, y2, colour);
 }
 
-// A tick's number without the digits that rounding leaves behind.
+// The label of a tick, without rounding errors.
 std::string number(const Panel& panel, double value, double tick) {
     if (panel.logarithmic) return fmt::format("{:g}", std::pow(10, std::round(value)));
     return fmt::format("{:g}", std::round(value / tick * 1e6) / 1e6 * tick);

@@ -12,7 +12,8 @@ namespace palpate {
 namespace {
 
 constexpr double rate = 1000;   // Hz
-constexpr float beyond = 0.1f;  // m around the hand that it knows of what moves: more than it goes in a frame
+constexpr float beyond = 0.1f;  // m, the radius of the patch of moving surfaces: more than a hand moves in a
+                                // frame
 
 }  // namespace
 
@@ -52,8 +53,8 @@ void Probe::begin(double time, const std::vector<Skin>& skins) {
     }
     const vec3 from = origin + position(recipe_.path, time);
     start_ = time;
-    hand_ = std::make_unique<FeltHand>(driver(recipe_.device).make({.path = std::move(path)}),
-                                       TouchSettings{.radius = recipe_.radius, .feels = feels_}, from);
+    hand_ = std::make_unique<SceneTouch>(driver(recipe_.device).make({.path = std::move(path)}),
+                                         TouchSettings{.radius = recipe_.radius, .feels = feels_}, from);
 }
 
 void Probe::expect_jump() {
@@ -63,7 +64,7 @@ void Probe::expect_jump() {
 void Probe::advance(double time, double seconds, const std::vector<Skin>& skins, bool moving) {
     const bool first = !hand_;
     if (first) begin(time, skins);
-    // All of what stands still, once and for all.
+    // Everything that stands still is set once.
     if (moving)
         hand_->feel(skins, time, beyond);
     else if (first)

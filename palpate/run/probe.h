@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/run/felt_hand.h"
+#include "palpate/run/scene_touch.h"
 
 #include <memory>
 #include <vector>
@@ -9,32 +9,33 @@ namespace palpate {
 /// How all surfaces of a scene feel, in the order of the skins.
 std::vector<Feel> feels_of(const Scene& scene);
 
-/// Throws Error where a tool has a device that there is none of.
+/// Throws Error if a tool names an unknown device.
 void check_devices(const Scene& scene);
 
-/// A tool of a scene that is felt: a hand along a scripted path, ticked a thousand times a second by the
-/// run's own clock, and the dents that it leaves in pictures (2007).
+/// A tool of the kind dent: a touch along a scripted path, ticked a thousand times a second on the run's own
+/// clock, with the dents that it leaves in pictures (2007).
 class Probe {
  public:
-    /// A tool of a scene, whose surfaces are the skins in its order.
+    /// Its surfaces are the skins of the scene, in order.
     Probe(const ToolRecipe& recipe, const Scene& scene);
 
     bool is_there(double time) const { return within(recipe_.path, time); }
 
-    /// Surfaces that feel another way now, as many as before; its device stays open and its motors as warm.
+    /// Sets how the surfaces feel now; their number is the same. The device stays open, and the warmth of its
+    /// motors is kept.
     void set(std::vector<Feel> feels);
 
-    /// The skins are where they are now without having moved there.
+    /// Says that the skins have jumped to their places instead of moved.
     void expect_jump();
 
-    /// From `time` on, at which it is there. At the path's first time its tip is brought to the surface that
-    /// it shall touch. `moving`: skins may have moved since the last call.
+    /// Advances from `time` on, when it must be present. At the path's first time its tip is placed at the
+    /// surface that it shall touch. `moving`: skins may have moved since the last call.
     void advance(double time, double seconds, const std::vector<Skin>& skins, bool moving);
 
-    /// The dents in a surface at a time; without those that spring back if the tip is no longer there.
+    /// The dents in a surface at a time; only the lasting ones if the tip is gone.
     std::vector<Dent> dents(int surface, double time) const;
 
-    // Once it has been there:
+    // Only after advance():
     vec3 centre() const { return vec3(hand_->felt().pose.place); }  // m
     double force() const { return force_; }                         // N, mean over the last call
     double depth() const { return hand_->felt().depth; }            // m, at its end
@@ -45,7 +46,7 @@ class Probe {
     ToolRecipe recipe_;
     std::string file_;  // of the scene, for messages
     std::vector<Feel> feels_;
-    std::unique_ptr<FeltHand> hand_;
+    std::unique_ptr<SceneTouch> hand_;
     double start_ = 0;  // s
     long ticks_ = 0;
     double force_ = 0;

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int version = 1;
-constexpr long most_frames = 100'000'000;  // weeks of them
+constexpr long most_frames = 100'000'000;  // weeks
 
 json numbers(vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -35,7 +35,7 @@ json of_pull(const BodyPush& pull) {
 
 json of_input(const Input& input) {
     json one = {{"at", input.at}};
-    if (const auto* hands = std::get_if<Hands>(&input.what)) {
+    if (const auto* hands = std::get_if<Interaction>(&input.what)) {
         for (const Press& press : hands->presses) one["press"].push_back(of_press(press));
         for (const BodyPush& pull : hands->pulls) one["pull"].push_back(of_pull(pull));
     } else if (const auto* set = std::get_if<SetChanges>(&input.what)) {
@@ -46,10 +46,10 @@ json of_input(const Input& input) {
     return one;
 }
 
-// ---- and back; what is wrong is thrown as nlohmann's or as a text ----
+// ---- reading; errors are thrown as nlohmann's exceptions or as a text ----
 
 float finite(const json& value) {
-    constexpr double most = 1e30;  // squares of sane numbers stay finite
+    constexpr double most = 1e30;  // so that squares stay finite
     const auto number = value.get<double>();
     if (!(std::abs(number) <= most)) throw std::string("a number that is not finite");
     return float(number);
@@ -60,8 +60,8 @@ vec3 to_vector(const json& value) {
     return {finite(value[0]), finite(value[1]), finite(value[2])};
 }
 
-Hands to_hands(const json& one) {
-    Hands hands;
+Interaction to_hands(const json& one) {
+    Interaction hands;
     for (const json& press : one.value("press", json::array()))
         hands.presses.push_back({to_vector(press.at("centre")), to_vector(press.at("velocity")),
                                  finite(press.at("radius")), finite(press.at("stiffness"))});

@@ -9,33 +9,33 @@
 
 namespace palpate {
 
-/// All that holds of a scene's changes from a frame on.
+/// All changes of a scene that hold from a frame on.
 struct SetChanges {
     std::vector<Change> changes;
 };
-/// Back to where things were some time before; see Experiment.
+/// A return to an earlier state; see Experiment.
 struct ReturnToGood {};
 
-/// What came into an experiment before one of its frames.
+/// An input to an experiment before one of its frames.
 struct Input {
     long at = 0;  // the number of the frame, from 0
-    std::variant<Hands, SetChanges, ReturnToGood> what;
+    std::variant<Interaction, SetChanges, ReturnToGood> what;
 };
 
-/// An experiment from its beginning, so that it can be done again to the bit: docs/viewer.md describes the
-/// file.
+/// All inputs of an experiment from its beginning, for a replay that is exact to the bit; docs/viewer.md
+/// describes the file.
 struct Recording {
-    SceneText scene;  // its text is carried along; files that it names are not
+    SceneText scene;  // its text is included; the files that it names are not
     std::vector<Change> changes;
-    std::vector<Input> inputs;  // in their order
+    std::vector<Input> inputs;  // in order of time
     long frames = 0;            // in all
     std::string fingerprint;    // of the state after the last
 };
 
-/// Writes it as JSON, whole or not at all. Throws Error.
+/// Writes it as JSON, atomically. Throws Error.
 void write_recording(const Recording& recording, const std::filesystem::path& file);
 
-/// Throws Error, which names the place, where something does not fit.
+/// Throws an Error that names the place of what is invalid.
 Recording read_recording(const std::filesystem::path& file);
 
 }  // namespace palpate

@@ -6,8 +6,7 @@
 
 namespace palpate {
 
-/// What a run did: docs/report.md describes the file, whose keys are these names with their units behind
-/// them.
+/// The results of a run. docs/report.md describes the file; its keys are these names followed by their units.
 struct Report {
     /// Of one body.
     struct Body {
@@ -22,20 +21,20 @@ struct Report {
         double elastic_energy = 0;        // J, at the end
         double largest_speed = 0;         // m/s, at the end of any frame
         std::size_t inverted_cells = 0;   // at the end of the worst frame
-        std::size_t held_at_start = 0;    // free nodes that lay in colliders at the start
-        std::vector<std::string> mended;  // what was done to get its surface
+        std::size_t held_at_start = 0;    // free nodes inside colliders at the start
+        std::vector<std::string> mended;  // the steps that made its surface
     };
     /// Of one tool.
     struct Tool {
         std::string name;
         double largest_force = 0;  // N
         double deepest_indentation =
-            0;  // m, of a surface under the tip, against where it was when the tip appeared
+            0;  // m, of a surface under the tip, relative to its place when the tip appeared
         std::vector<double> time;         // s, the end of each frame
         std::vector<double> force;        // N, mean over the frame
         std::vector<double> indentation;  // m, at the end of the frame
     };
-    /// Of work, by its kind.
+    /// Time by kind of work.
     struct Seconds {
         double build = 0, simulate = 0, map = 0, render = 0, write = 0, total = 0;
     };
@@ -46,14 +45,14 @@ struct Report {
     int pictures = 0;            // drawn
     double simulated = 0;        // s
     Seconds seconds;             // s, of work
-    bool diverged = false;       // then the run ended at `simulated`
-    std::optional<double> rest;  // s, when a run that was to end at rest came to it
+    bool diverged = false;       // then the run ended at the time `simulated`
+    std::optional<double> rest;  // s, when a run with until_rest came to rest
     std::vector<Body> bodies;
     std::vector<Tool> tools;
     std::vector<std::string> notes;
 
-    /// Frames that the computer does in a second of simulating and mapping, and drawing where it drew;
-    /// nothing where nothing moved, was felt or was drawn.
+    /// Frames per second of time spent on simulating, mapping and drawing; nothing if nothing moved, was felt
+    /// or was drawn.
     std::optional<double> frames_per_second() const;
 };
 

@@ -9,9 +9,9 @@
 #include "palpate/gl/context.h"
 #include "palpate/run/film.h"
 #include "palpate/run/notes.h"
+#include "palpate/run/picture_writer.h"
 #include "palpate/run/play.h"
 #include "palpate/run/plot.h"
-#include "palpate/run/show.h"
 #include "palpate/scene/build.h"
 #include "palpate/solver/forces.h"
 
@@ -26,7 +26,7 @@
 namespace palpate {
 namespace {
 
-// ---- what is written at the end ----
+// ---- outputs at the end ----
 
 void write_nodes(const std::vector<Model>& models, const std::vector<State>& states,
                  const std::filesystem::path& path) {
@@ -34,14 +34,14 @@ void write_nodes(const std::vector<Model>& models, const std::vector<State>& sta
     for (std::size_t m = 0; m < models.size(); ++m)
         for (std::size_t i = 0; i < states[m].positions.size(); ++i) {
             const dvec3 p = states[m].positions[i], v = states[m].velocities[i];
-            // {} writes the shortest digits that read back as the same number.
+            // {} writes the fewest digits that read back as the same number.
             text += fmt::format("{},{},{},{},{},{},{},{}\n", models[m].body.name, i, p.x, p.y, p.z, v.x, v.y,
                                 v.z);
         }
     write_text(path, text);
 }
 
-// The file of one skin: where there are several, its name is in the file's.
+// The file of one skin: if there are several, with the skin's name in it.
 std::filesystem::path file_of(std::size_t skin, const Scene& scene, std::filesystem::path path) {
     const std::size_t bodies = scene.bodies.size();
     const std::string& name = skin < bodies ? scene.bodies[skin].name : scene.surfaces[skin - bodies].name;
@@ -55,9 +55,9 @@ void write_surfaces(const Scene& scene, const std::vector<Skin>& skins, const st
         write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles}, file_of(s, scene, path));
 }
 
-// ---- what is written on the way ----
+// ---- outputs during the run ----
 
-// The names of the numbered files with these beginning and end that a folder holds.
+// The names of a folder's numbered files with this prefix and suffix.
 std::vector<std::string> numbered_files(const std::filesystem::path& folder, const std::string& begin,
                                         const std::string& end) {
     std::vector<std::string> names;
@@ -74,8 +74,8 @@ std::vector<std::string> numbered_files(const std::filesystem::path& folder, con
     return names;
 }
 
-// Of those the ones that are not ours: an earlier run left them. Nothing is removed that somebody may want to
-// keep.
+// Those of them that are left from an earlier run. They are not removed, because somebody may want to keep
+// them.
 void look_for_older(const std::filesystem::path& folder, const std::string& begin, const std::string& end,
                     const std::set<std::string>& ours, std::vector<std::string>& notes) {
     std::size_t count = 0;
@@ -90,7 +90,7 @@ void look_for_older(const std::filesystem::path& folder, const std::string& begi
                                     folder.empty() ? "this folder" : folder.string(), one));
 }
 
-// The surfaces as they move, each in a sequence of its own.
+// The moving surfaces, each in a sequence of its own.
 class MeshSequences {
  public:
     MeshSequences(const RunSettings& settings, const Scene& scene, const Models& made, const Play& play,
@@ -107,7 +107,7 @@ class MeshSequences {
         }
     }
 
-    // The first is the state before the first step.
+    // The first picture is the state before the first step.
     void frame_done(double time, const Play& play) {
         if (time < next_ - 1e-9) return;
         next_ += apart_;
@@ -138,7 +138,7 @@ class MeshSequences {
 
 // ---- rest ----
 
-// When the last path of a scene has come to its end, s.
+// The end of the last path of a scene, s.
 double last_of_paths(const Scene& scene) {
     double last = 0;
     auto look_at = [&](const Path& path) {
@@ -151,7 +151,7 @@ double last_of_paths(const Scene& scene) {
     return last;
 }
 
-// Watches for the moment when everything is at rest.
+// Detects when everything is at rest.
 class RestWatch {
  public:
     RestWatch(Rest rule, const Scene& scene, const Models& made)
@@ -162,9 +162,10 @@ class RestWatch {
         }
     }
 
-    // After each frame. Before the last path's end nothing counts: what rests may yet be pushed.
+    // Call it after each frame. Before the last path's end nothing counts, since a resting body may still be
+    // pushed.
     bool at_rest(double time, double seconds, const Play& play) {
-        constexpr double long_enough = 0.5;  // s: a swing that turns back is slow for a moment too
+        constexpr double long_enough = 0.5;  // s: a swing is slow for a moment at its turning point, too
         if (rule_ == Rest::none) return false;
         const bool all = rule_ == Rest::move ? small_moves(play) : slow(seconds, play);
         quiet_ = all && time - seconds >= busy_until_ - 1e-9 ? quiet_ + seconds : 0;
@@ -177,7 +178,7 @@ class RestWatch {
                            [](const Stats& stats) { return stats.largest_move < 0.001; });
     }
 
-    // By the way of each node from frame to frame: its speed at a moment is partly the rounding of floats.
+    // By the displacement of each node in a frame, because momentary speeds contain rounding errors.
     bool slow(double seconds, const Play& play) {
         bool all = true;
         for (std::size_t m = 0; m < before_.size(); ++m) {
@@ -191,15 +192,15 @@ class RestWatch {
 
     Rest rule_;
     double busy_until_;
-    double quiet_ = 0;  // s, for so long it has been at rest
+    double quiet_ = 0;  // s, how long it has been at rest
     std::vector<std::vector<vec3>> before_;
     std::vector<float> spacings_;
 };
 
-// How long a run may last, and how far it goes on at a time.
+// The longest duration of a run, and the length of its frames.
 struct Pace {
     double duration, frame;  // s
-    double step = 0;         // s, of which both hold whole ones; 0: it does not matter
+    double step = 0;         // s, of which both are whole multiples; 0: any
 
     double next(double time) const {
         const double left = duration - time;
@@ -229,13 +230,14 @@ void check_numbers(const RunSettings& settings) {
            "no time between the pictures of a sequence", "give seconds");
 }
 
-// A sequence that is one file, with the mesh at rest beside it or in it; other formats are numbered files.
+// Whether a sequence is a single file, with the mesh at rest in it or beside it; other formats are numbered
+// files.
 bool has_rest_beside(const std::filesystem::path& sequence) {
     return ending(sequence) == ".pc2" || ending(sequence) == ".mdd";
 }
 bool has_rest_inside(const std::filesystem::path& sequence) { return ending(sequence) == ".glb"; }
 
-// Nothing that the run will write may replace what it reads.
+// Throws if an output would replace an input.
 void check_inputs_stay(const Scene& scene, const RunSettings& settings) {
     const std::vector<std::filesystem::path> inputs = find_files(scene);
     auto check_numbered = [&](const std::filesystem::path& folder, const std::string& begin,
@@ -258,7 +260,7 @@ void check_inputs_stay(const Scene& scene, const RunSettings& settings) {
     if (!settings.images.empty()) check_numbered(settings.images, scene.name + "-", "s.png");
 }
 
-// Says before the work what could not be written after it.
+// Checks before the work that all outputs can be written.
 void check_outputs(const Scene& scene, const RunSettings& settings) {
     check_numbers(settings);
     if (!settings.plot.empty() && scene.tools.empty())
@@ -271,7 +273,7 @@ void check_outputs(const Scene& scene, const RunSettings& settings) {
     if (!settings.images.empty()) {
         check_folder(std::filesystem::absolute(settings.images / ".").parent_path().parent_path(),
                      settings.images.string());
-        make_folder(settings.images);  // other outputs may lie in it
+        make_folder(settings.images);  // first, since other outputs may be in it
     }
     if (!settings.video.empty()) check_film(settings.video, settings.width, settings.height);
     check_output(settings.report, ".json");
@@ -305,16 +307,16 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     const Models made = build(scene, progress);
     report.notes = notes_before(scene, made);
     const auto known_before = std::ptrdiff_t(report.notes.size());
-    std::optional<gl::Context> context;  // in which a GPU moves the bodies, and pictures are drawn
+    std::optional<gl::Context> context;  // for a backend on the GPU, and for drawing
     if (on_gpu(made.simulation.backend)) report.renderer = context.emplace().renderer();
     const gl::Context* const shared = context ? &*context : nullptr;
     Play play(scene, made, report, shared);
     for (std::size_t m = 0; m < made.models.size(); ++m)
         for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c)
             report.bodies[m].held_at_start += held_at_start(scene, made, c, m);
-    std::unique_ptr<Show> show;
+    std::unique_ptr<PictureWriter> show;
     if (!settings.video.empty() || !settings.images.empty()) {
-        show = std::make_unique<Show>(scene, made, settings, shared);
+        show = std::make_unique<PictureWriter>(scene, made, settings, shared);
         report.renderer = show->renderer();
     }
     const Pace pace = pace_of(scene, settings, play);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float collider_shine = 0.4f;
 
-// Behind a tip at the origin; nothing to see if it has none.
+// The shaft behind a tip at the origin; empty if it has none.
 Collider shaft_of(const ToolRecipe& tool) {
     if (!(tool.shaft > 0)) return {Sphere{}};
     return {Capsule{vec3(0), -tool.shaft * glm::normalize(tool.along), tool.radius}};
@@ -32,9 +32,9 @@ Scenery::Scenery(const Scene& scene, const Models& made, Renderer& renderer, Map
         meshes_.push_back(hangs ? renderer.add(model.surface, model.embedding) : renderer.add(model.surface));
         looks_.push_back(look_of(scene.bodies[m], model, renderer));
     }
-    for (std::size_t s = 0; s < made.stills.size(); ++s) {
+    for (std::size_t s = 0; s < made.static_surfaces.size(); ++s) {
         const BodyRecipe& recipe = scene.surfaces[s];
-        meshes_.push_back(renderer.add(made.stills[s].surface));
+        meshes_.push_back(renderer.add(made.static_surfaces[s].surface));
         looks_.push_back({.colour = recipe.colour,
                           .shine = recipe.shine,
                           .shows_normals = recipe.shade == Shade::normals});
@@ -52,7 +52,7 @@ Scenery::Shape Scenery::shape_of(const Collider& collider, Renderer& renderer) c
     return shape;
 }
 
-// Where a GPU moves the nodes, surfaces follow them there; normal maps want tangents, which go that way too.
+// If the GPU moves the nodes, it maps the surfaces, too; normal maps need tangents, which only the GPU maps.
 bool Scenery::mapped_where_drawn(std::size_t body) const {
     return on_gpu(made_->simulation.backend) || made_->models[body].normal_map.width > 0;
 }

@@ -20,7 +20,8 @@ struct Triangle {
     }
 };
 
-// The triangles that a ball on its way can touch: those whose own ball comes near its path, ahead.
+// Broad phase: the triangles that a moving ball may touch, because their bounding spheres are near its path,
+// ahead.
 std::vector<Triangle> ahead(vec3 from, vec3 along, float radius, const std::vector<Skin>& skins) {
     std::vector<Triangle> triangles;
     for (const Skin& skin : skins)
@@ -43,7 +44,8 @@ std::optional<float> way_to_touch(vec3 from, vec3 along, float radius, const std
     if (triangles.empty()) return std::nullopt;
     float farthest = 0;
     for (const Triangle& t : triangles) farthest = std::max(farthest, t.distance(from) + radius);
-    // The ball may always go on by its distance to the nearest triangle without passing through any.
+    // Conservative advancement (sphere tracing): the ball may always move by its distance to the nearest
+    // triangle without passing through any.
     float way = 0;
     for (int i = 0; i < 1000 && way <= farthest; ++i) {
         float room = std::numeric_limits<float>::max();

@@ -32,7 +32,7 @@ vec3 down(const Scene& scene) {
     return glm::length(gravity) > 0 ? glm::normalize(gravity) : vec3(0, -1, 0);
 }
 
-// Reads a file that a scene names: an error about it says where the scene names it, and as what.
+// Reads a file of a scene: an error says in addition where and under which key the scene names it.
 template <class Read>
 auto reading(const Scene& scene, const std::string& whose, const Lines& lines, const std::string& key,
              Read read) {
@@ -45,8 +45,9 @@ auto reading(const Scene& scene, const std::string& whose, const Lines& lines, c
 
 // ---- nodes ----
 
-// Nodes in rising order, each once. What chooses none is a note: a body that nothing pins would fall.
-// `where` and `key` name the choice: "body cube", "pin."; `lines` are of the recipe that it belongs to.
+// The chosen nodes in increasing order, without duplicates. A criterion without nodes gives a note, because a
+// body that nothing pins would fall. `where` and `key` name the choice: "body cube", "pin."; `lines` are
+// those of its recipe.
 std::vector<int> chosen(const Body& body, const Choice& choice, const Scene& scene, const Lines& lines,
                         const std::string& where, const std::string& key, std::vector<std::string>& notes) {
     std::vector<int> all;
@@ -88,7 +89,7 @@ Volume read_labels(const Region& region, const BodyRecipe& recipe, const Scene& 
     return labels;
 }
 
-// How many times as stiff as the body a region's springs are.
+// The factor of a region's stiffness over the body's.
 float factor_of(const Region& region, const Body& body) {
     if (region.factor > 0) return region.factor;
     const float stiffness =
@@ -126,7 +127,7 @@ void hold(Body& body, const BodyRecipe& recipe, const Scene& scene, std::vector<
 
 // ---- bodies ----
 
-// How much a solid encloses, and how much its cavities, m³.
+// The volume of a solid, and that of its cavities, m³.
 struct Enclosed {
     double solid = 0, cavities = 0;
 };
@@ -140,7 +141,7 @@ Enclosed enclosed_by(const Mesh& mesh) {
     return found;
 }
 
-// What the user should know of what came out. `filled`: the volume that was filled.
+// Warnings about the body. `filled`: the volume that was filled.
 void add_notes(const BodyRecipe& recipe, const Model& model, Enclosed filled,
                std::vector<std::string>& notes) {
     auto note = [&](const std::string& what) {
@@ -191,8 +192,8 @@ ClothSettings cloth_settings(const BodyRecipe& recipe) {
     return settings;
 }
 
-// A plain box around the middle of a surface, or a sheet through it; large enough for it unless its spacing
-// is given.
+// A box around the centre of a surface, or a sheet through it; large enough for it unless its spacing is
+// given.
 Body cage_around(const Mesh& surface, const BodyRecipe& recipe) {
     const ivec3 dims = *recipe.cage;
     const Bounds box = bounds(surface);
@@ -216,7 +217,7 @@ Body make_body(const BodyRecipe& recipe, const Mesh& surface, const Progress& pr
                    progress);
 }
 
-// A rectangle of cloth as a surface; a picture covers all of it.
+// The surface of a rectangle of cloth; a texture covers all of it.
 Mesh cloth_mesh(const Body& body) {
     Mesh mesh = face_mesh(body);
     const vec3 size = bounds(mesh).size();
@@ -234,7 +235,7 @@ void read_maps(const BodyRecipe& recipe, const Scene& scene, Model& model) {
     if (recipe.weave) model.normal_map = weave(*recipe.weave);
 }
 
-// A grid is made and its surface hung on it at the origin, where its sides lie along the axes.
+// A grid is made, and its surface embedded, at the origin with its sides along the axes.
 void place(Model& model, const BodyRecipe& recipe) {
     const mat3 turned = turn(recipe.rotate);
     for (vec3& p : model.body.positions) p = turned * p + recipe.move;
@@ -244,7 +245,7 @@ void place(Model& model, const BodyRecipe& recipe) {
     model.embedding.edges = turned * model.embedding.edges;
 }
 
-// The same with the first of its files that is found; with the one it wants where none is.
+// The same recipe with the first of its files that is found; with its first choice if none is.
 BodyRecipe with_surface(BodyRecipe recipe, const std::filesystem::path& folder,
                         std::vector<std::string>& notes) {
     if (recipe.surface.empty() || is_found(recipe.surface, folder)) return recipe;
@@ -258,9 +259,9 @@ BodyRecipe with_surface(BodyRecipe recipe, const std::filesystem::path& folder,
     return recipe;
 }
 
-// ---- what need not be made again ----
+// ---- reusing what has not changed ----
 
-// The same, but for how it looks and feels.
+// The recipe without its look and feel.
 BodyRecipe without_looks(BodyRecipe recipe) {
     const BodyRecipe plain;
     recipe.colour = plain.colour;
@@ -270,7 +271,7 @@ BodyRecipe without_looks(BodyRecipe recipe) {
     return recipe;
 }
 
-// All but what its nodes are made of, which of them are held, and how the surface hangs on them.
+// The recipe without its material, pins and mapping.
 BodyRecipe without_stuff(BodyRecipe recipe) {
     const BodyRecipe plain;
     recipe = without_looks(std::move(recipe));
@@ -281,7 +282,7 @@ BodyRecipe without_stuff(BodyRecipe recipe) {
     return recipe;
 }
 
-// Only what its surface is made of.
+// The recipe of its surface alone.
 BodyRecipe without_body(BodyRecipe recipe) {
     const BodyRecipe plain;
     recipe = without_stuff(std::move(recipe));
@@ -298,12 +299,12 @@ bool looks_down(const BodyRecipe& recipe) {
            });
 }
 
-// What a scene was made into before it was changed.
+// The models of a scene before it was changed.
 struct Earlier {
     const Scene& scene;
     const Models& made;
 
-    // The number of a body that was made of the same recipe, apart from what `but_for` takes out of it.
+    // The index of a body that was made from the same recipe, apart from what `but_for` removes.
     std::optional<std::size_t> find(const BodyRecipe& recipe, BodyRecipe (*but_for)(BodyRecipe)) const {
         for (std::size_t i = 0; i < scene.bodies.size(); ++i)
             if (but_for(scene.bodies[i]) == but_for(recipe)) return i;
@@ -313,14 +314,14 @@ struct Earlier {
         const auto number = find(recipe, but_for);
         return number ? &made.models[*number] : nullptr;
     }
-    const Still* still(const BodyRecipe& recipe) const {
+    const StaticSurface* still(const BodyRecipe& recipe) const {
         for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
-            if (without_looks(scene.surfaces[i]) == without_looks(recipe)) return &made.stills[i];
+            if (without_looks(scene.surfaces[i]) == without_looks(recipe)) return &made.static_surfaces[i];
         return nullptr;
     }
 };
 
-// The whole body, unless nodes are chosen by what is down, or held by a motion that is another now.
+// The whole body, unless its nodes depend on the direction of gravity or on a motion that has changed.
 const Model* unchanged(const BodyRecipe& recipe, const Scene& scene, const Earlier* earlier) {
     if (!earlier || scene.moves != earlier->scene.moves) return nullptr;
     if (looks_down(recipe) && down(scene) != down(earlier->scene)) return nullptr;
@@ -344,9 +345,8 @@ CleanSurface surface_of(const BodyRecipe& recipe, const Scene& scene, const Earl
     return made;
 }
 
-// The same nodes of another stuff, held elsewhere, or with a surface that hangs on them in another way;
-// nothing, if that is not all that has changed. Grids without a mesh and cloths are made anew faster than
-// that.
+// The same nodes with another material, other pins or another mapping; nothing if more than that has changed.
+// Grids without a mesh and cloths are faster to make again.
 std::optional<Model> restuffed(const BodyRecipe& recipe, const Scene& scene, const Earlier* earlier,
                                std::vector<std::string>& notes) {
     if (recipe.dims || recipe.cage || recipe.is_cloth() || recipe.is_textured() || !earlier)
@@ -388,7 +388,7 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* ear
     if (!model.surface.positions.empty() && !model.surface.triangles.empty())
         model.embedding = embed(model.surface, model.body, recipe.mapping);
     else
-        model.surface = {};  // what has no faces shows nothing
+        model.surface = {};  // nothing to draw without faces
     if (grid) place(model, recipe);
 
     hold(model.body, recipe, scene, notes);
@@ -396,9 +396,9 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* ear
     return model;
 }
 
-Still build_still(const BodyRecipe& wanted, const Scene& scene, const Earlier* earlier,
-                  std::vector<std::string>& notes, const Progress& progress) {
-    if (const Still* same = earlier ? earlier->still(wanted) : nullptr) return *same;
+StaticSurface build_static_surface(const BodyRecipe& wanted, const Scene& scene, const Earlier* earlier,
+                                   std::vector<std::string>& notes, const Progress& progress) {
+    if (const StaticSurface* same = earlier ? earlier->still(wanted) : nullptr) return *same;
     const BodyRecipe recipe = with_surface(wanted, scene.folder, notes);
     CleanSurface made = read_and_mend(recipe, "surface " + recipe.name, scene, progress);
     for (const std::string& note : made.notes)
@@ -421,12 +421,12 @@ MovedNodes find_moved(const MoveRecipe& recipe, std::size_t number, const Scene&
     return moved;
 }
 
-// Places in millimetres lead far away from everything.
+// A path in millimetres leads far away from everything.
 void look_at_paths(const Scene& scene, Models& made) {
     Bounds all;
     for (const Model& model : made.models)
         for (vec3 p : model.body.positions) all.include(p);
-    for (const Still& still : made.stills)
+    for (const StaticSurface& still : made.static_surfaces)
         for (vec3 p : still.surface.positions) all.include(p);
     const float size = glm::length(all.size());
     auto look_at = [&](const std::string& whose, const Path& path, const Lines& lines, vec3 origin) {
@@ -452,7 +452,7 @@ void look_at_paths(const Scene& scene, Models& made) {
 
 // ---- files ----
 
-// A file of another kind than its key wants: "a volume", and what to write instead. Of none no kind.
+// The kind of a file that does not fit its key ("a volume"), and what to write instead; empty if it fits.
 struct Mistaken {
     std::string kind, remedy;
 };
@@ -531,7 +531,7 @@ Mesh read_shape(const ColliderRecipe& recipe, const Scene& scene, const std::str
     return mesh;
 }
 
-// Triangles without an area have no side to stay on.
+// Degenerate triangles have no sides.
 Polygon polygon_of(const Mesh& mesh, float thickness) {
     Polygon polygon{{}, thickness};
     for (uvec3 t : mesh.triangles) {
@@ -580,7 +580,8 @@ void shift(Polygon& polygon, vec3 by) {
 }
 void shift(DistanceField& field, vec3 by) { field.origin += by; }
 
-// Adds a collider; one that moves is given about its pivot, so that it turns about it within a frame too.
+// Adds a collider; a moving one is given relative to its pivot, so that it also rotates about it within a
+// frame.
 void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& result) {
     const std::string where = fmt::format("collider {}", result.pivots.size() + 1);
     Collider collider = recipe.collider;
@@ -625,7 +626,8 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
     for (const BodyRecipe& recipe : scene.bodies)
         result.models.push_back(build_one(recipe, scene, earlier, result.notes, progress));
     for (const BodyRecipe& recipe : scene.surfaces)
-        result.stills.push_back(build_still(recipe, scene, earlier, result.notes, progress));
+        result.static_surfaces.push_back(
+            build_static_surface(recipe, scene, earlier, result.notes, progress));
     for (std::size_t i = 0; i < scene.moves.size(); ++i) {
         result.moves.push_back(find_moved(scene.moves[i], i + 1, scene, result.models, result.notes));
         pin(result.models[result.moves[i].body].body, result.moves[i].nodes);
@@ -642,7 +644,7 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
 }  // namespace
 
 Models build(const Scene& scene, const Progress& progress) {
-    find_files(scene);  // before the work on the first begins
+    find_files(scene);  // before long work begins
     return build_all(scene, nullptr, progress);
 }
 

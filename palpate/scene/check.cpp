@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-// Fails unless something holds, at the line of a key: of the recipe itself where that is empty or not given.
+// Fails unless a condition holds, with the line of a key, or of the recipe if the key is empty or not given.
 class Require {
  public:
     Require(std::string what_of, const Lines& lines, const SceneSource& source)
@@ -24,7 +24,7 @@ class Require {
     }
     bool has(const std::string& key) const { return lines_.has(key); }
 
-    // Of several keys exactly one.
+    // Requires exactly one of several keys.
     void one_of(const std::vector<std::string>& keys, const std::string& remedy) const {
         std::string all, given, last;
         for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -34,7 +34,7 @@ class Require {
             last = keys[i];
         }
         (*this)(last, given == last && !given.empty(),
-                fmt::format("it wants exactly one of {}, and has {}", all,
+                fmt::format("it needs exactly one of {}, but has {}", all,
                             given.empty() ? "none" : "both " + given),
                 given.empty() ? remedy : "remove one");
     }
@@ -45,7 +45,7 @@ class Require {
     const SceneSource& source_;
 };
 
-// `key`: what the choice stands under, such as "pin.".
+// `key`: the prefix of the choice's keys, such as "pin.".
 void check(const Choice& choice, const std::string& key, const Require& require) {
     require(key + "radius", choice.near || choice.radius == 0, key + "radius without " + key + "near",
             "say around which point");
@@ -56,7 +56,7 @@ void check(const Choice& choice, const std::string& key, const Require& require)
 void check(const Region& region, const BodyRecipe& body, const SceneSource& source) {
     const Require require("body " + body.name + ", region", region.lines, source);
     check(region.choice, "", require);
-    require("", !region.choice.empty() || !region.labels.empty(), "it says nowhere which nodes",
+    require("", !region.choice.empty() || !region.labels.empty(), "it does not say which nodes",
             "give it near and radius, a box, or labels");
     require("label", region.labels.empty() == !region.label, "labels and label go together",
             "give the file and the value");
@@ -65,7 +65,7 @@ void check(const Region& region, const BodyRecipe& body, const SceneSource& sour
             "springs of several kinds have neither one modulus nor one stiffness", "give it a factor");
 }
 
-// What the springs are made of: a modulus, one stiffness, or one for each kind.
+// The stiffness of springs: a modulus, one stiffness, or one for each kind.
 void check_springs(const BodyRecipe& body, const Require& require) {
     if (body.springs || body.is_cloth()) {
         for (const char* key : {"youngs_modulus", "stiffness"})
@@ -73,7 +73,7 @@ void check_springs(const BodyRecipe& body, const Require& require) {
                     "remove it, and write springs = { structural = 100, shear = 50, flexion = 5 }");
         require("springs", body.is_cloth() || body.dims, "springs are for cloth, sheets and dims",
                 "give youngs_modulus or stiffness");
-        require("links", !require.has("links"), "links means nothing here", "remove it");
+        require("links", !require.has("links"), "links has no effect here", "remove it");
     } else {
         require.one_of({"youngs_modulus", "stiffness"},
                        "give it one: brain has about 1e4 Pa, or say the N/m of each spring");
@@ -92,15 +92,14 @@ void check_grid(const BodyRecipe& body, const Require& require) {
     require(key, double(d.x) * d.y * d.z <= 1e7, key + " is more than 10 million nodes", "use fewer");
     for (const char* one : {"iso", "units", "smooth", "size", "centre", "faces", "nodes", "weld", "specks",
                             "solid", "voxel", "largest"})
-        require(one, !require.has(one), fmt::format("{} beside {}, for which it means nothing", one, key),
+        require(one, !require.has(one), fmt::format("{} beside {}, where it has no effect", one, key),
                 "remove it");
     require(key, body.spacing > 0, key + " without spacing", "say how far apart the nodes are, in m");
 }
 
-// What it wears. A map needs texture coordinates, which only files and cloth have.
+// Textures. A map needs texture coordinates, which only files and cloth have.
 void check_maps(const BodyRecipe& body, const Require& require) {
-    require("weave", body.normal_map.empty() || !body.weave,
-            "normal_map beside weave, of which one must count", "remove one");
+    require("weave", body.normal_map.empty() || !body.weave, "both normal_map and weave", "remove one");
     if (!body.is_textured()) return;
     const std::string map = require.has("colour_map")   ? "colour_map"
                             : require.has("normal_map") ? "normal_map"
@@ -118,12 +117,11 @@ void check(const Feel& feel, const Require& require) {
             "touch.sliding is above touch.friction, so nothing would ever stick", "make it no larger");
 }
 
-// What every recipe of a surface says.
+// Common to all recipes of a surface.
 void check_surface(const BodyRecipe& body, const Require& require) {
     require("iso", !body.volume.empty() || !body.iso, "iso without a volume", "remove it");
     require("size", body.size == 0 || body.size >= 1e-6f, "size is below 1e-6 m", "give it in m");
-    require("size", body.size == 0 || !body.units, "size beside units, of which one must count",
-            "remove one");
+    require("size", body.size == 0 || !body.units, "both size and units", "remove one");
     check(body.feel, require);
 }
 
@@ -183,7 +181,7 @@ void check_shape(const Box& box, const Require& require) {
 void check_shape(const Polygon& polygon, const Require& require) {
     for (const auto& [a, b, c] : polygon.triangles)
         require("polygon.triangles", glm::length(glm::cross(b - a, c - a)) > 0,
-                "a polygon with a triangle that has no area", "give it three corners that are not in a line");
+                "a polygon with a degenerate triangle", "give it three corners that are not collinear");
 }
 void check_shape(const DistanceField&, const Require&) {}
 
@@ -205,18 +203,18 @@ void check(MoveRecipe& move, std::size_t number, const std::set<std::string>& bo
            const SceneSource& source) {
     const Require require(fmt::format("move {}", number), move.lines, source);
     if (move.body.empty() && bodies.size() == 1) move.body = *bodies.begin();
-    require("", !move.body.empty(), "it says nowhere which body", "name one of " + all_of(bodies));
+    require("", !move.body.empty(), "it does not say which body", "name one of " + all_of(bodies));
     require("body", bodies.contains(move.body), "no body \"" + move.body + "\"",
             "name one of " + all_of(bodies));
     check(move.nodes, "nodes.", require);
-    require("nodes", !move.nodes.empty(), "it says nowhere which nodes", "write nodes = { below = 0.1 }");
+    require("nodes", !move.nodes.empty(), "it does not say which nodes", "write nodes = { below = 0.1 }");
     require("path", !move.path.empty(), "no path", "give it a file or rows of [t, x, y, z]");
 }
 
 void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const SceneSource& source) {
     const Require require("tool " + tool.name, tool.lines, source);
     require("device", tool.kind == ToolKind::dent || tool.device == ToolRecipe{}.device,
-            fmt::format("a {} feels no device", name_of(tool.kind)),
+            fmt::format("a {} does not use a device", name_of(tool.kind)),
             fmt::format("leave out \"{}\", or make it a dent", tool.device));
     require("path", !tool.path.empty(), "no path", "give it a file or rows of [t, x, y, z]");
     require("along", (!tool.from && tool.shaft == 0) || glm::length(tool.along) > 0, "along is zero",
@@ -242,7 +240,7 @@ void check(const CameraRecipe& camera, const std::set<std::string>& names, const
 
 // ---- all of it ----
 
-// Names become parts of file names and cells of tables.
+// Names become parts of file names and cells of tables, so some characters are not allowed.
 void check_name(const std::string& name, const Lines& lines, const SceneSource& source) {
     for (unsigned char c : name)
         if (c < ' ' || std::string_view("/\\,\"").find(char(c)) != std::string_view::npos)

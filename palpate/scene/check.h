@@ -1,20 +1,20 @@
 #pragma once
-// What a scene must be to make sense, beyond what its file's grammar says.
+// Consistency checks of a scene, beyond the grammar of its file.
 #include "palpate/scene/scene.h"
 
 #include <string>
 
 namespace palpate {
 
-/// The text that a scene is read from, a file or what a change says: names it in messages.
+/// The source of a scene's text, a file or a change, for messages.
 struct SceneSource {
     std::string file;
 
-    /// Throws Error. A line of 0: nobody knows.
+    /// Throws Error. `line`: 0 if unknown.
     [[noreturn]] void fail(int line, const std::string& what, const std::string& remedy) const;
 };
 
-/// Gives names to what has none, lengths of 1 to normals, and throws Error where something does not fit.
+/// Names what has no name, normalises normals, and throws Error if something is inconsistent.
 void check(Scene& scene, const SceneSource& source);
 
 }  // namespace palpate

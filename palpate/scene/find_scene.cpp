@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-// What to do where neither a scene nor a file has the name.
+// The remedy if neither a scene nor a file has the name.
 std::string remedy_for_unknown(const std::string& name) {
     std::string list;
     std::vector<std::string> names;
@@ -23,7 +23,7 @@ std::string remedy_for_unknown(const std::string& name) {
            "give a scene (.toml), a mesh, a volume, or one of: " + list;
 }
 
-// A file's name as TOML writes it.
+// A file name as a TOML string.
 std::string quoted(const std::filesystem::path& file) {
     std::string text = "\"";
     for (char c : file.string()) {
@@ -36,8 +36,8 @@ std::string quoted(const std::filesystem::path& file) {
     return text + '"';
 }
 
-// Whatever size it had, it is two decimetres long then, so that step and hand suit it; and stiff enough to
-// bear its own weight without folding (50 kPa: softer than a rubber, stiffer than a liver).
+// It is scaled to two decimetres, which suits the step and the hand, and stiff enough to bear its own weight
+// without folding (50 kPa: softer than rubber, stiffer than a liver).
 SceneText scene_around(const char* kind, const std::filesystem::path& file) {
     return {fmt::format(R"([[body]]
 name = "it"
@@ -70,7 +70,7 @@ SceneText find_scene(const std::string& file_or_name) {
     if (std::filesystem::is_directory(file, error))
         throw Error("no DICOM series in the folder", file_or_name, "name a file, or another folder");
     if (!named_so && file.has_extension())
-        throw Error("neither a scene nor a mesh nor a volume by its ending", file_or_name,
+        throw Error("an extension of neither a scene nor a mesh nor a volume", file_or_name,
                     "a scene ends in .toml; meshes and volumes are listed in docs/import.md");
     return {read_text(file_or_name), file_or_name, file.parent_path()};
 }

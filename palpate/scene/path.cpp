@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-// The numbers of a row; empty if any of its words is not a finite number. Between semicolons or tabs, as
-// spreadsheets of half of Europe write them, a comma is a decimal point.
+// The numbers of a row; empty if any of its words is not a finite number. Between semicolons or tabs, as many
+// European spreadsheets write them, a comma is a decimal point.
 std::vector<double> numbers(std::string row) {
     const char between = row.find(';') != row.npos ? ';' : row.find('\t') != row.npos ? '\t' : ',';
     if (between != ',') std::replace(row.begin(), row.end(), ',', '.');
@@ -64,7 +64,7 @@ dmat3 turned(vec3 degrees) {
     return dmat3(turned);
 }
 
-// The path at a time, rotations still in degrees.
+// The waypoint at a time, with its rotation in degrees.
 Waypoint at(const Path& path, double time) {
     const auto next = std::upper_bound(path.begin(), path.end(), time,
                                        [](double t, const Waypoint& w) { return t < w.time; });
@@ -112,7 +112,7 @@ Path make_path(const std::vector<std::vector<double>>& rows, Rows kind, const Ro
 
 Path read_path(const std::filesystem::path& file, Rows kind) {
     std::vector<std::vector<double>> rows;
-    std::vector<int> lines;  // of each row
+    std::vector<int> lines;  // the line of each row
     std::istringstream text(read_text(file));
     int line = 0;
     for (std::string row; std::getline(text, row);) {
@@ -124,7 +124,7 @@ Path read_path(const std::filesystem::path& file, Rows kind) {
     }
     if (rows.empty()) throw Error("no waypoint", file.string(), "write rows of t, x, y, z in s and m");
     return make_path(rows, kind, [&](std::size_t row, const std::string& what, const std::string& remedy) {
-        const bool commas = rows[row].size() > 4;  // perhaps some are within numbers
+        const bool commas = rows[row].size() > 4;  // some may be decimal commas
         throw Error(fmt::format("line {} {}", lines[row], what), file.string(),
                     remedy + (commas ? ", with points in numbers, or with semicolons between them" : ""));
     });

@@ -16,7 +16,7 @@ namespace {
 
 // ---- what a scene file may hold ----
 
-// What bodies are made of; and coordinates, as far as paths may lead.
+// Lengths of bodies; and coordinates, also of paths.
 const NumberRange length = between(1e-6, 1e4, "m");
 const NumberRange position = between(-1e6, 1e6, "m");
 

@@ -19,27 +19,28 @@
 
 namespace palpate {
 
-// A scene is recipes: what to read, what to make of it, what happens to it. Plain data; build() (build.h)
-// makes the bodies. docs/scene-format.md describes the file; each field below is a key of the same name.
+// A scene consists of recipes: what to read, what to make of it, what happens to it. Plain data; build()
+// (build.h) makes the bodies. docs/scene-format.md describes the file; each field below is a key of the same
+// name.
 
-/// Where in the file a recipe and its keys came from, for messages. Recipes that differ only in that are
-/// equal.
+/// The lines of a recipe and its keys in the file, for messages. They do not matter when recipes are
+/// compared.
 struct Lines {
-    int table = 0;                    // 0: nobody knows
-    std::map<std::string, int> keys;  // of those that are given, also as "pin.radius"; 0: by a change
+    int table = 0;                    // 0: unknown
+    std::map<std::string, int> keys;  // of the keys that are given, also as "pin.radius"; 0: by a change
 
     bool has(const std::string& key) const { return keys.contains(key); }
-    /// The line of a key; of the recipe, if it is not given.
+    /// The line of a key; that of the recipe if the key is not given.
     int of(const std::string& key) const {
         const auto found = keys.find(key);
         return found == keys.end() ? table : found->second;
     }
-    /// Where the scene of that file says it, for messages: the file and the line; "--set" where a change did.
+    /// The place of a key for messages: the file and the line; "--set" if it came by a change.
     std::string where(const std::string& key, const std::string& file) const;
     bool operator==(const Lines&) const { return true; }
 };
 
-/// Which nodes of a body, at rest; several ways may be given at once.
+/// A selection of nodes of a body at rest; several criteria may be given at once.
 struct Choice {
     std::optional<float> below;  // the lowest part of the body's height along gravity: 0.15 is 15 %
     std::vector<int> nodes;      // by number
@@ -51,23 +52,23 @@ struct Choice {
     bool operator==(const Choice&) const = default;
 };
 
-/// A part of a body that is harder or softer than the rest: nodes of a choice, or those that a label volume
-/// gives this label, and one of the last three. Where regions overlap, the last counts.
+/// A part of a body that is harder or softer than the rest: selected nodes, or those with this label in a
+/// label volume (a segmentation), and one of the last three. Where regions overlap, the last one wins.
 struct Region {
     Choice choice;  // its fields are keys of the region itself
     std::string
         labels;  // a file of voxels (mm unless the body says otherwise), turned and moved as the body is
-    std::optional<float> label;  // the value of those that belong to the region
+    std::optional<float> label;  // the label of the region
     float youngs_modulus = 0;    // Pa
     float stiffness = 0;         // N/m of each spring
-    float factor = 0;            // times as stiff as the body
+    float factor = 0;            // its stiffness over the body's
     Lines lines;
     bool operator==(const Region&) const = default;
 };
 
-/// What is seen of a surface.
+/// How a surface is coloured.
 enum class Shade {
-    colour,   // in the light
+    colour,   // its colour, lit
     normals,  // its normals as they are at the moment: x, y and z as red, green and blue (2005, figure 6)
 };
 
@@ -76,43 +77,49 @@ inline std::span<const Named<Shade>> names(Shade) {
     return all;
 }
 
-/// How a body comes about: what it is made from, of what stuff it is, how it looks.
+/// How a body is made: its source, its material, its look.
 struct BodyRecipe {
     std::string name;
     std::string volume;   // a file of voxels, or a folder of slices; or
     std::string surface;  // a file of triangles; or
     std::vector<std::string>
-        stand_ins;               // other files, the first of which that is found is taken where that is not
-    std::optional<ivec3> dims;   // a plain box of so many nodes along each axis; or
+        stand_ins;               // other files: if the surface is not found, the first of these that is
+    std::optional<ivec3> dims;   // a plain box with this many nodes along each axis; or
     std::optional<ivec2> cloth;  // a rectangle of cloth
-    bool sheet = false;          // the surface itself is cloth: a node a vertex, a spring an edge
-    std::optional<float> iso;    // the value at the surface of a volume; else the one its values suggest
-    std::optional<Units> units;  // of the file; else what it states, or mm (volumes), m (surfaces)
+    bool sheet = false;          // the surface itself is cloth: a node at each vertex, a spring along each
+                                 // edge
+    std::optional<float> iso;    // the value of the isosurface of a volume; else one that its histogram
+                                 // suggests
+    std::optional<Units> units;  // of the file; else what it states, or mm (volumes) or m (surfaces)
     vec3 rotate = vec3(0);       // degrees about x, then y, then z
-    float size = 0;              // m: after turning, scale it so that its longest side is this; 0 leaves it
-    bool centre = false;         // then bring the middle of its box to the origin
+    float size = 0;              // m: after rotating, scales it so that its longest side is this; 0: no
+                                 // scaling
+    bool centre = false;         // then moves the centre of its bounding box to the origin
     vec3 move = vec3(0);         // m, after that
-    bool largest = true;         // keep only the largest connected part
-    RepairSettings repair{};     // its weld, specks, solid and voxel are keys of the body; the rest follows
-    std::optional<int> smooth;   // passes of smoothing; 10 for a volume, 0 for a surface
-    int faces = 0;               // simplify the surface to about this many; 0 leaves it
+    bool largest = true;         // keeps only the largest connected part
+    RepairSettings repair{};     // its weld, specks, solid and voxel are keys of the body; the others are
+                                 // derived
+    std::optional<int> smooth;   // passes of Taubin smoothing; 10 for a volume, 0 for a surface
+    int faces = 0;               // decimates the surface to about this many; 0: no decimation
     int nodes = 20'000;          // of the lattice; or
     float spacing = 0;           // m
-    std::optional<ivec3>
-        cage;           // instead: a plain box of so many nodes around the surface; a last 1 is a sheet
-    Material material;  // its fields are keys of the body itself; of cloth, density is in kg/m²
+    std::optional<ivec3> cage;   // instead: a plain box with this many nodes around the surface; a final 1
+                                 // makes a sheet
+    Material material;           // its fields are keys of the body itself; of cloth, density is in kg/m²
     std::optional<SpringKinds> springs;  // of cloth, or of the volume of 2012 with dims
+    Choice pin;                          // nodes to pin
     float bending = 0;                   // N m, of a sheet (ClothSettings)
-    Choice pin;                          // nodes to hold fast
     std::vector<Region> regions;
     Mapping mapping = Mapping::automatic;
     vec3 colour = vec3(0.80f, 0.55f, 0.50f);  // linear red, green, blue from 0 to 1
-    float shine = 0.4f;                       // 0 dull, 1 wet
-    std::string colour_map;                   // a picture, times the colour, which is then white unless given
-    std::string normal_map;      // a picture of normals in the tangent frame, y up, 0 to 255 as -1 to 1; or
-    std::optional<ivec2> weave;  // that of a cloth of so many threads across u and v (mesh/relief.h)
+    float shine = 0.4f;                       // of the specular reflection: 0 dull, 1 wet
+    std::string colour_map;                   // a texture, multiplied with the colour, which is then white
+                                              // unless given
+    std::string normal_map;                   // a normal map in tangent space, y up, 0 to 255 for -1 to 1; or
+    std::optional<ivec2> weave;               // that of a woven cloth with this many threads across u and v
+                                              // (mesh/relief.h)
     Shade shade = Shade::colour;
-    Feel feel;  // under a tool that is felt
+    Feel feel;  // for tools of the kind dent
     Lines lines;
 
     bool has_normal_map() const { return !normal_map.empty() || weave; }
@@ -121,27 +128,26 @@ struct BodyRecipe {
     bool operator==(const BodyRecipe&) const = default;
 };
 
-/// A collider. Where its shape lies in a file, build() fills it in: a Polygon's triangles, or a DistanceField
-/// of which only the spacing is given here.
+/// A collider. If its shape is in a file, build() fills it in: a Polygon's triangles, or a DistanceField, of
+/// which only the spacing is given here.
 struct ColliderRecipe {
     Collider collider;
     std::string surface;         // a file of triangles ...
-    std::optional<Units> units;  // ... in these; else in what it states, or metres
+    std::optional<Units> units;  // ... in these units; else in what it states, or metres
     vec3 rotate = vec3(0);       // degrees about x, then y, then z
-    vec3 move = vec3(0);         // m, after turning
+    vec3 move = vec3(0);         // m, after rotating
     Path path;                   // shift and rotation over time; empty: it stands still
-    std::optional<vec3> about;  // the point that the rotation leaves where it is; else the shape's own middle
+    std::optional<vec3> about;   // the centre of the rotation; else the shape's own centre
     vec3 colour = vec3(0.5f);
     Lines lines;
 };
 
 /// Prescribed motion of some nodes.
 struct MoveRecipe {
-    std::string body;  // may be left out where there is only one
+    std::string body;  // may be omitted if there is only one
     Choice nodes;
-    Path path;  // shift and rotation over time
-    std::optional<vec3>
-        about;  // the point that the rotation leaves where it is; else the nodes' middle at rest
+    Path path;                  // shift and rotation over time
+    std::optional<vec3> about;  // the centre of the rotation; else that of the nodes at rest
     Lines lines;
     bool operator==(const MoveRecipe&) const = default;
 };
@@ -149,7 +155,7 @@ struct MoveRecipe {
 enum class ToolKind {
     press,  // a round tip that pushes
     drag,   // a spring that pulls one node along
-    dent,   // a hand's tip that feels surfaces and dents their pictures; bodies do not feel it (2007)
+    dent,   // a haptic tip that feels surfaces and dents them in pictures; bodies do not react (2007)
 };
 
 inline std::span<const Named<ToolKind>> names(ToolKind) {
@@ -158,30 +164,30 @@ inline std::span<const Named<ToolKind>> names(ToolKind) {
     return all;
 }
 
-/// What follows a path and acts on bodies; it is there from the path's first time to its last.
+/// A tool that follows a path and acts on bodies; it is present from the path's first time to its last.
 struct ToolRecipe {
     std::string name;
     ToolKind kind = ToolKind::press;
-    std::string device = "script";  // of a dent: one that follows a path, by its name (touch/drivers.h)
-    float radius = 0.01f;           // m; of a drag: how large it is drawn
+    std::string device = "script";  // for a dent: the name of a device that follows a path (touch/drivers.h)
+    float radius = 0.01f;           // m; for a drag only the size of the drawing
     float stiffness = 400;          // N/m, see Press and NodePush; 50 for a drag
     Path path;                      // s, m; a file of rows or the rows themselves
     vec3 colour = vec3(0.25f, 0.45f, 0.75f);
-    // ---- of a press, and of a dent ----
+    // ---- for a press or a dent ----
     /// If given, the path starts where the tip, moved from this point ...
     std::optional<vec3> from;
-    /// ... in this direction, first touches a surface; the path's positions are counted from there.
+    /// ... in this direction, first touches a surface; the path's positions are relative to that place.
     vec3 along = vec3(0, -1, 0);
-    float shaft = 0;  // m: a rod behind the tip, against `along`, that is drawn only
-    // ---- of a drag ----
-    std::string body;          // whose node it pulls; empty: the nearest body's
-    std::optional<vec3> near;  // it takes the node nearest to this point; else to the path's first position
-    bool relative = false;     // the path's positions are counted from where that node is then
+    float shaft = 0;  // m: the length of a rod behind the tip, against `along`, that is only drawn
+    // ---- for a drag ----
+    std::string body;          // the body whose node it pulls; empty: the nearest
+    std::optional<vec3> near;  // it grasps the node nearest to this point; else to the path's first position
+    bool relative = false;     // the path's positions are relative to the node's place at that time
     Lines lines;
     bool operator==(const ToolRecipe&) const = default;
 };
 
-/// From where it is looked at. What is not given is found when there is something to see: run/framing.h.
+/// The camera. What is not given is chosen by run/framing.h.
 struct CameraRecipe {
     std::optional<vec3> eye;  // m
     std::variant<std::monostate, vec3, std::string>
@@ -192,56 +198,56 @@ struct CameraRecipe {
     Lines lines;
 };
 
-/// All that a scene's file says.
+/// The contents of a scene's file.
 struct Scene {
-    std::string name;              // of the file, without its ending
-    std::string file;              // as it was named, for messages
-    std::filesystem::path folder;  // that files are named from
+    std::string name;              // of the file, without its extension
+    std::string file;              // as it was given, for messages
+    std::filesystem::path folder;  // the base of relative file names
     Simulation simulation;         // without what build() adds: colliders, contact and pull
-    double duration = 5;           // s, of a run that is not told otherwise
+    double duration = 5;           // s, the default length of a run
     Path wind;                     // its velocity over time, m/s; empty: none
     CameraRecipe camera;
     Light light;
     std::vector<BodyRecipe> bodies;
     std::vector<BodyRecipe>
-        surfaces;  // that nothing moves: of these recipes what makes a surface, its look and feel
+        surfaces;  // static surfaces: of these recipes only the surface, its look and its feel are used
     std::vector<ColliderRecipe> colliders;
     std::vector<MoveRecipe> moves;
     std::vector<ToolRecipe> tools;
-    std::vector<std::string> notes;  // what looks wrong in the file: a number whose unit may be another
+    std::vector<std::string> notes;  // warnings about the file, such as a number whose unit may be wrong
     /// The files that its paths were read from.
     std::vector<std::filesystem::path> path_files;
 };
 
-/// Where up is: as the camera says, else against gravity, else along y. Unit.
+/// The up direction: the camera's, else against gravity, else y. Unit.
 vec3 sky(const Scene& scene);
 
-/// A change from outside the file: `body.brain.nodes=5000`. `collider.3={ plane = {} }` adds a third of two.
-/// One that names another source for a body (volume, surface, dims, cloth) takes away what was said of the
-/// old one: its file, iso, units and maps.
+/// A change from outside the file: `body.brain.nodes=5000`. If there are two colliders, `collider.3={ plane =
+/// {} }` adds a third. A change that gives a body another source (volume, surface, dims, cloth) removes the
+/// keys of the old one: its file, iso, units and maps.
 using Change = std::string;
 
-/// A scene before it is read, so that it can be changed, read again and saved.
+/// The text of a scene, which can be changed, read again and saved.
 struct SceneText {
     std::string text;
-    std::string name;              // of its file, or of a shipped scene; for messages
-    std::filesystem::path folder;  // that files are named from
+    std::string name;              // of its file or of a shipped scene, for messages
+    std::filesystem::path folder;  // the base of relative file names
 };
 
-/// The text of a scene: the name of a shipped scene, the path of a TOML file; or of a mesh or a volume, which
-/// becomes one soft body of 0.2 m that is held below. Throws Error if there is none, or the name's ending
-/// says nothing.
+/// Finds the text of a scene by the name of a shipped scene or the path of a TOML file; or makes one for a
+/// mesh or a volume, which becomes a soft body of 0.2 m that is held at its bottom. Throws Error if there is
+/// none, or if the extension is unknown.
 SceneText find_scene(const std::string& file_or_name);
 
-/// Its text with changes made, to be saved: TOML that reads as the same scene. Comments, and the order of
-/// keys, are lost. Throws Error.
+/// Its text with changes applied, for saving: TOML that reads as the same scene. Comments and the order of
+/// keys are lost. Throws Error.
 std::string changed(const SceneText& scene, std::span<const Change> changes);
 
-/// Reads a scene that find_scene() finds. Changes are made before it is
-/// checked. Throws Error with the file, the line and the nearest known key where something does not fit.
+/// Reads a scene that find_scene() finds. Changes are applied before it is checked. Throws an Error with the
+/// file, the line and the most similar known key if something is invalid.
 Scene read_scene(const std::string& file_or_name, std::span<const Change> changes = {});
 
-/// The same from a text; `name` is used in messages, and files are looked for in `folder`.
+/// The same from a text; `name` is for messages, and `folder` is the base of relative file names.
 Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& folder,
                   std::span<const Change> changes = {});
 
@@ -253,16 +259,15 @@ inline Scene parse_scene(const SceneText& scene, std::span<const Change> changes
 struct ShippedScene {
     std::string name;
     std::string text;
-    std::string about;  // its first line of comment
+    std::string about;  // its first comment
 };
 const std::vector<ShippedScene>& shipped_scenes();
 
-/// Finds a file or a folder that a scene names: as it stands if absolute, else in the scene's folder, in the
-/// folder that the variable PALPATE_DATA names, or where Debian's mricron-data puts its templates. Throws
-/// Error.
+/// Finds a file or a folder of a scene: an absolute path as it is; else in the scene's folder, in the folder
+/// of the environment variable PALPATE_DATA, or where Debian's mricron-data puts its templates. Throws Error.
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder);
 bool is_found(const std::string& name, const std::filesystem::path& folder);
-/// What to do where it is not found: the file beside the scene whose name is nearly that, or where files go.
+/// The remedy if it is not found: a file beside the scene with a similar name, or where to put files.
 std::string remedy_for_missing(const std::string& name, const std::filesystem::path& folder);
 
 }  // namespace palpate

@@ -9,25 +9,24 @@
 
 namespace palpate {
 
-/// A surface, and what was done to get it, a line each with its counts.
+/// A mended surface, and the steps that made it, one line each.
 struct CleanSurface {
     Mesh mesh;
-    /// Of a recipe with maps: what is seen of it, the file's own surface, in the same place. It has several
-    /// vertices where a texture has a seam, and may be open where the mesh is not. Else empty: that is the
-    /// mesh.
+    /// For a recipe with maps: what is drawn, the file's original surface, in the same place. It has several
+    /// vertices at texture seams, and may be open although the mesh is closed. Otherwise empty: the mesh is
+    /// drawn.
     Mesh drawn;
     std::vector<std::string> steps;
-    std::vector<std::string> notes;  // what was decided without being asked, or looks wrong
+    std::vector<std::string> notes;  // automatic decisions, and what looks wrong
 };
 
-/// The surface of one recipe: read, mended, simplified, placed. It encloses a volume, but for a sheet's and a
-/// cage's. Not for a plain box or a rectangle of cloth, whose surface comes from its nodes. Throws Error;
-/// also if the recipe has maps and the file no texture coordinates.
+/// Makes the surface of one recipe: reads, mends, decimates and places it. It encloses a volume, except for a
+/// sheet or a cage. Not for a plain box or a rectangle of cloth, whose surface comes from its nodes. Throws
+/// Error, also if the recipe has maps but the file has no texture coordinates.
 CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
                           const Progress& progress = {});
 
-/// What looks wrong with a surface's size, or nothing: over 10 m or under 1 mm the unit is probably not what
-/// was said.
+/// A warning about a surface's size, or empty: above 10 m or below 1 mm its unit is probably wrong.
 std::string size_warning(const Mesh& surface);
 
 }  // namespace palpate

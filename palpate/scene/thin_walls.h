@@ -6,15 +6,15 @@
 
 namespace palpate {
 
-/// Walls of a closed mesh that its field may not see, because none of its points lies deep enough in them:
-/// what meets them may go through.
+/// Walls of a closed mesh that its signed distance field may miss, because no grid point is deep enough
+/// inside them: nodes may pass through them.
 struct ThinWalls {
     float share = 0;     // of the surface
-    float thinnest = 0;  // m, of those that were looked at
-    float spacing = 0;   // m, with which a field would see them
+    float thinnest = 0;  // m, the thinnest of those that were sampled
+    float spacing = 0;   // m, with which a field would resolve them
 };
 
-/// Nothing where they are no more than a hundredth of the surface.
+/// Nothing if they are at most a hundredth of the surface.
 std::optional<ThinWalls> thin_walls(const Mesh& mesh, const DistanceField& field);
 
 }  // namespace palpate

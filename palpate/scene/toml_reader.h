@@ -1,6 +1,6 @@
 #pragma once
-// Reads TOML into plain structs, with messages that name the file, the line, the key, its unit and the
-// nearest known key. It brings in toml++, so only read_scene.cpp includes it.
+// Reads TOML into plain structs, with messages that name the file, the line, the key, its unit and the most
+// similar known key. It includes toml++, so only read_scene.cpp includes it.
 #include "palpate/base/error.h"
 #include "palpate/base/names.h"
 #include "palpate/base/vectors.h"
@@ -26,14 +26,14 @@ namespace palpate {
 /// 0: it came with a change, not from the file.
 inline int line_of(const toml::node& node) { return int(node.source().begin.line); }
 
-/// What a number may be, and what it usually is: what is outside its range is refused; what is merely unusual
-/// is taken, and a note asks whether its unit is right.
+/// The valid and the usual range of a number. A number outside the valid range is refused; an unusual one is
+/// accepted, with a note that asks whether its unit is right.
 struct NumberRange {
     double least = -std::numeric_limits<double>::infinity(), most = -least;
-    bool above = false;                           // `least` itself is too little
+    bool above = false;                           // whether `least` itself is excluded
     std::string_view unit = "";                   // "Pa"
     std::string_view example = "";                // "brain is about 1e4 Pa"
-    double usual_least = 0, usual_most = -least;  // of its absolute value; 0 is never unusual
+    double usual_least = 0, usual_most = -least;  // for its absolute value; 0 is never unusual
 
     NumberRange usual(double low, double high) const {
         NumberRange range = *this;
@@ -46,7 +46,7 @@ struct NumberRange {
         const double size = std::abs(value);
         return size == 0 || (size >= usual_least && size <= usual_most);
     }
-    /// About a number that is outside: "not above 0", "negative", "not from 0 to 1".
+    /// What is wrong with a number outside the range: "not above 0", "negative", "not from 0 to 1".
     std::string complaint(double value) const {
         const bool no_end = std::isinf(most);
         if (value < 0 && least == 0 && !above) return "negative";
@@ -81,17 +81,17 @@ inline NumberRange between(double least, double most, std::string_view unit = ""
     return range;
 }
 
-/// What all tables of a scene share while they are read.
+/// Shared by all tables of a scene while they are read.
 struct SceneReading {
     const SceneSource& source;
-    std::vector<std::string> notes = {};  // what looks wrong
+    std::vector<std::string> notes = {};  // warnings
     std::map<std::string, std::set<std::string>> keys =
-        {};                                 // that each table may have, by its path: "body.cube"
+        {};                                 // the known keys of each table, by its path: "body.cube"
     std::map<int, std::string> units = {};  // of the numbers on each line
 };
 
-/// A number with a decimal comma as TOML writes it; a comma before three digits may part thousands: "20,000"
-/// is "20.000, or 20000 if the comma parts thousands".
+/// Suggests a decimal point for a number with a comma. A comma before three digits may separate thousands:
+/// "20,000" gives "20.000, or 20000 if the comma separates thousands".
 inline std::string with_point(const std::string& number) {
     const auto comma = number.find(',');
     std::string decimal = number, whole = number;
@@ -101,16 +101,16 @@ inline std::string with_point(const std::string& number) {
     const auto first = number.find_first_not_of("+-");
     const bool thousands = number.size() - comma == 4 && comma - first <= 3 && number[first] != '0' &&
                            number.find_first_not_of("0123456789", comma + 1) == number.npos;
-    return thousands ? fmt::format("{}, or {} if the comma parts thousands", decimal, whole) : decimal;
+    return thousands ? fmt::format("{}, or {} if the comma separates thousands", decimal, whole) : decimal;
 }
 
-/// A number, whole or not; a value that is none is not a number.
+/// An integer or a float as a number; NaN for other values.
 inline double number_of(const toml::node& node) {
     if (const auto whole = node.value_exact<std::int64_t>()) return double(*whole);
     return node.value_exact<double>().value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-/// What a value is, for messages: "many" in quotes, or "a list of 3".
+/// A value for messages: "many" in quotes, or "a list of 3".
 inline std::string in_words(const toml::node& node) {
     if (const auto text = node.value_exact<std::string>()) return '"' + *text + '"';
     if (const auto truth = node.value_exact<bool>()) return *truth ? "true" : "false";
@@ -120,11 +120,12 @@ inline std::string in_words(const toml::node& node) {
     return node.is_table() ? "a table" : "a date or a time";
 }
 
-/// Reads one table into a struct: it is called with each key and where its value goes. Keys that it was never
-/// called with are errors, found by finish().
+/// Reads one table into a struct: it is called with each key and the destination of its value. Keys with
+/// which it was never called are errors, found by finish().
 class Reader {
  public:
-    /// `path`: of the table in its scene, as a change names it: "body.cube.pin"; empty for all of the scene.
+    /// `path`: the path of the table in its scene, as in a change: "body.cube.pin"; empty for the whole
+    /// scene.
     Reader(const toml::table& table, SceneReading& reading, std::string path)
         : table_(table), reading_(reading), path_(std::move(path)) {}
 
@@ -143,7 +144,7 @@ class Reader {
         check(key, *node, range);
     }
 
-    /// A direction, of any length but zero.
+    /// A direction of any length above zero.
     template <class Vector>
     void direction(const char* key, Vector& value, const char* example) {
         const toml::node* node = get(key);
@@ -165,13 +166,13 @@ class Reader {
         if (std::min({value.x, value.y, value.z}) < 0)
             fail(*node, full(key) + " is negative",
                  fmt::format("give red, green and blue from 0 to {}", most));
-        auto linear = [](float byte) {  // as sRGB has it
+        auto linear = [](float byte) {  // from sRGB
             const double part = std::clamp(byte / 255.0, 0.0, 1.0);
             return part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
         };
         fail(*node, fmt::format("{} is not from 0 to {}", full(key), most),
              fmt::format(
-                 "of 0 to 255 as pictures have it, write [{:.2g}, {:.2g}, {:.2g}], which is linear light",
+                 "for sRGB values from 0 to 255, write [{:.2g}, {:.2g}, {:.2g}], which is linear light",
                  linear(value.x), linear(value.y), linear(value.z)));
     }
 
@@ -203,7 +204,7 @@ class Reader {
         reader.finish();
     }
 
-    /// The same, also where it is not there: as if it were empty.
+    /// The same; if the table is missing, as if it were empty.
     template <class ReadInside>
     void table_or_none(const char* key, ReadInside read_inside) {
         if (get(key)) return table(key, read_inside);
@@ -219,7 +220,7 @@ class Reader {
         return table_.get(key);
     }
 
-    /// Where the table and its keys stand, and those of the tables in it.
+    /// The lines of the table and its keys, and of those of the tables in it.
     Lines lines() const {
         Lines lines{line_of(table_), {}};
         for (const auto& [key, node] : table_) {
@@ -231,7 +232,7 @@ class Reader {
         return lines;
     }
 
-    /// Where a value stands, for messages.
+    /// The place of a value, for messages.
     std::string where(const toml::node& node) const {
         const int line = line_of(node);
         return line > 0 ? fmt::format("{}, line {}", reading_.source.file, line) : "--set";
@@ -318,7 +319,7 @@ class Reader {
         read(key, node, name);
         const auto known = value_of<E>(name);
         if (!known)
-            fail(node, fmt::format("{} is \"{}\", which is none of its values", full(key), name),
+            fail(node, fmt::format("{} is \"{}\", which is not one of its values", full(key), name),
                  "choose from " + all_names<E>());
         value = *known;
     }

@@ -3,30 +3,30 @@
 
 namespace palpate {
 
-/// Sliders of ImGui. There is one pointer, and it holds one slider at a time.
+/// Sliders of ImGui. The pointer holds at most one slider at a time.
 class Sliders {
  public:
-    /// Whether a slider has moved, and whether it has been moving before: then both are one change.
+    /// Whether a slider has moved, and whether it has moved before while held: then both are one change.
     struct Slid {
         bool moved = false, again = false;
     };
-    /// Of the control before this.
+    /// For the control before this.
     Slid slid(bool moved);
     Slid slide(const char* label, float& value, float low, float high, const char* format,
                bool logarithmic = false);
-    /// For what takes the solver a while: true once it is let go of.
+    /// For a change that takes the solver long: true once the slider is released.
     bool slide_and_let_go(const char* label, float& value, float low, float high, const char* format);
 
  private:
-    bool has_moved_ = false;  // since it was taken hold of
-    unsigned held_ = 0;       // ImGui's number of the one that is let go of later
-    float at_ = 0;            // where that is
+    bool has_moved_ = false;  // since it was grasped
+    unsigned held_ = 0;       // ImGui's id of the slider that is held
+    float at_ = 0;            // its value
 };
 
 /// The controls beside the picture, as one ImGui window at the left edge.
 class Controls {
  public:
-    /// `scale`: as Gui's.
+    /// `scale`: as in Gui.
     void show(Viewer& viewer, float scale);
 
  private:
@@ -38,7 +38,7 @@ class Controls {
     void show_surroundings(Viewer& viewer);
 
     Sliders sliders_;
-    char file_[512] = "";  // of the device, as it is being written
+    char file_[512] = "";  // of the device, while it is being typed
 };
 
 }  // namespace palpate

@@ -85,13 +85,13 @@ void colours(float scale) {
         style.Colors[which] = accent;
 }
 
-// ---- what lies over the picture ----
+// ---- over the picture ----
 
 constexpr ImGuiWindowFlags bare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
-// Over the picture, so far from its upper edge.
+// A line of text over the picture, at this distance from its upper edge.
 void over_picture(const Viewer& viewer, float height, float pivot) {
     ImGui::SetNextWindowPos({float(viewer.left()) + 0.5f * float(viewer.size().x), height}, 0, {0.5f, pivot});
 }
@@ -100,7 +100,7 @@ void in_middle(const Viewer& viewer, float part) {
     over_picture(viewer, part * float(viewer.size().y), 0.5f);
 }
 
-// A place in the picture as a place in the window.
+// Converts a position in the picture to the window.
 ImVec2 in_window(const Viewer& viewer, vec2 pixel) { return {float(viewer.left()) + pixel.x, pixel.y}; }
 
 void show_start(Viewer& viewer) {
@@ -144,7 +144,7 @@ void show_message(const Viewer& viewer, float scale) {
     ImGui::End();
 }
 
-// The first thing to do, until it is done.
+// A hint for beginners, until they have done it.
 void show_hint(const Viewer& viewer, float scale) {
     if (viewer.touched() || viewer.importing()) return;
     over_picture(viewer, 14 * scale, 0);
@@ -173,7 +173,7 @@ void show_help_window(bool& open) {
     ImGui::End();
 }
 
-// A force's arrow from a hand's place, by the root of its size, and that in words.
+// An arrow for a force at the hand, with the square root of its size, and its size as text.
 void draw_arrow(const Viewer& viewer, const Arrow& arrow, float scale) {
     const float newtons = glm::length(arrow.force);
     if (!(newtons > 0)) return;
@@ -202,7 +202,7 @@ void draw_arrow(const Viewer& viewer, const Arrow& arrow, float scale) {
     list.AddText(corner, IM_COL32_WHITE, text.c_str());
 }
 
-// How large the tip is that dents.
+// A ring of the size of the tip that dents.
 void draw_tip(const Viewer& viewer, float scale) {
     if (!viewer.feeling() || viewer.options.mode != Mode::dent) return;
     const Camera camera = viewer.camera();

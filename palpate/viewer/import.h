@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Builds a scene on a thread of its own. Destroying it cancels, and waits until the work has noticed, which
-/// it does between two of its parts.
+/// Builds a scene on a thread of its own. The destructor cancels and waits for the thread, which checks
+/// between its stages.
 class Import {
  public:
     Import(SceneText source, std::vector<Change> changes);
@@ -29,7 +29,7 @@ class Import {
     State state() const;
 
     bool done() const;
-    /// Once it is done. Throws Error if it could not be built.
+    /// To be called when it is done. Throws Error if the scene could not be built.
     Prepared take() { return work_.get(); }
 
  private:

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// What the window says to a person: the latest.
+/// The latest message to the user.
 struct Message {
     std::string text;
     bool bad = false;
@@ -16,7 +16,7 @@ struct Message {
 
     void say(const std::string& what, bool is_bad = false) { *this = {what, is_bad, now()}; }
 
-    /// What a person asks for may fail, and the window goes on: it says why. False if it did.
+    /// Tries a user's request: if it fails, the message says why, and this returns false.
     bool attempt(const std::function<void()>& what) noexcept try {
         what();
         return true;

@@ -1,4 +1,4 @@
-// In the place of all the others, where there is no GLFW or no Dear ImGui.
+// Takes the place of all the other files where GLFW or Dear ImGui is missing.
 #include "palpate/base/error.h"
 #include "palpate/viewer/show.h"
 

@@ -7,12 +7,12 @@
 
 namespace palpate {
 
-/// What a hand does to what it meets.
+/// What the pointer or a device does to a body.
 enum class Mode {
-    pull,   // takes hold of a surface and pulls it along
+    pull,   // grasps a surface and pulls it
     press,  // pushes a round tip into it, along the view
-    dent,   // dents its picture and feels it, a thousand times a second; bodies do not feel it (2007)
-    pin,    // holds nodes fast, or lets go of them
+    dent,   // feels the surface with haptics, and dents it in the picture; the bodies do not react (2007)
+    pin,    // pins nodes, or releases them
 };
 
 inline std::span<const Named<Mode>> names(Mode) {
@@ -21,10 +21,10 @@ inline std::span<const Named<Mode>> names(Mode) {
     return all;
 }
 
-/// How an experiment is shown. Nothing of it changes what moves.
+/// How an experiment is drawn. It does not affect the simulation.
 struct Look3d {
-    bool wireframe = false;  // the triangles' edges over the surfaces
-    bool springs = false;    // the lattice's
+    bool wireframe = false;  // the edges of triangles
+    bool springs = false;    // the springs of the lattice
     bool normals = false;    // as colours (2005, figure 6)
     bool normal_maps = true;
     bool culling = true;
@@ -32,7 +32,7 @@ struct Look3d {
     bool operator==(const Look3d&) const = default;
 };
 
-/// The same experiment twice, side by side: the right one with another mapping, or on another backend.
+/// A second experiment beside the first for comparison, with another mapping or on another backend.
 struct Compared {
     enum class With { nothing, mapping, backend } with = With::nothing;
     Mapping mapping = Mapping::trilinear;
@@ -40,17 +40,17 @@ struct Compared {
     bool operator==(const Compared&) const = default;
 };
 
-/// How well pictures are drawn.
+/// The drawing quality.
 enum class Care {
-    automatic,  // as a draft until it is paused, where the CPU has to draw; else in full
+    automatic,  // if the CPU draws, as a draft until it is paused; else in full
     draft,
     full
 };
 
-/// All that a person can set about how they look and reach in; it is no part of what moves.
+/// All options of viewing and interacting; they are not part of the simulation.
 struct Options {
     Mode mode = Mode::pull;
-    float tip = 0.01f;  // m, the radius of what presses and dents
+    float tip = 0.01f;  // m, the radius of the tip that presses and dents
     Look3d look;
     Care care = Care::automatic;
     bool paused = false;

@@ -12,11 +12,11 @@ vec3 unit(vec3 v, vec3 otherwise) {
     return length > 1e-12f ? v / length : otherwise;
 }
 
-// The axes of a picture.
+// The frame of a camera.
 struct Axes {
     vec3 right, up, forward;
     float distance;  // m, from the eye to what it looks at
-    float slope;     // of the line of sight through the middle of the upper edge
+    float slope;     // the tangent of half the vertical field of view
 
     explicit Axes(const Camera& camera) {
         const vec3 to = camera.look_at - camera.eye;
@@ -61,7 +61,7 @@ std::optional<vec2> pixel_of(const Camera& camera, vec3 point, ivec2 size) {
 
 namespace {
 
-// Where points are across a ray, m: it is at zero.
+// Coordinates across a ray, m: the ray is at zero.
 std::vector<vec2> across(const Ray& ray, std::span<const vec3> points) {
     const vec3 aside = std::abs(ray.along.x) < 0.7f ? vec3(1, 0, 0) : vec3(0, 1, 0);
     const vec3 right = glm::normalize(glm::cross(ray.along, aside)), up = glm::cross(right, ray.along);
@@ -76,7 +76,7 @@ bool surround_zero(vec2 a, vec2 b, vec2 c) {
     return low.x <= 0 && low.y <= 0 && high.x >= 0 && high.y >= 0;
 }
 
-// How far along a ray it meets a triangle (Möller and Trumbore 1997); nothing if it does not.
+// The distance along a ray to a triangle (Möller and Trumbore 1997); nothing if it misses.
 std::optional<float> way_to(const Ray& ray, vec3 a, vec3 e, vec3 f) {
     const vec3 p = glm::cross(ray.along, f);
     const float det = glm::dot(e, p);
@@ -91,7 +91,8 @@ std::optional<float> way_to(const Ray& ray, vec3 a, vec3 e, vec3 f) {
 
 }  // namespace
 
-// All triangles are looked at, most of them only from along the ray: a millisecond for 100,000.
+// All triangles are tested, most of them only by a quick rejection in ray coordinates: a millisecond for
+// 100,000.
 std::optional<Hit> pick(const Ray& ray, std::span<const Skin> skins) {
     std::optional<Hit> hit;
     for (std::size_t s = 0; s < skins.size(); ++s) {

@@ -10,12 +10,12 @@
 
 namespace palpate {
 
-/// What hands add to a picture: their tips, lines from what they hold, and dents.
+/// What interactions add to a picture: tips, lines to what they hold, and dents.
 struct Traces {
     std::vector<Ball> balls;
     std::vector<vec3> points;
     std::vector<uvec2> lines;
-    std::vector<std::vector<Dent>> dents;  // one list a surface, or none at all
+    std::vector<std::vector<Dent>> dents;  // one list for each surface, or none
 
     void add_line(vec3 from, vec3 to) {
         lines.push_back(uvec2(points.size(), points.size() + 1));
@@ -24,7 +24,7 @@ struct Traces {
 };
 inline const vec3 hand_colour(0.95f, 0.6f, 0.1f), proxy_colour(0.1f, 0.45f, 0.85f);
 
-/// One picture in the window: an experiment as a renderer draws it.
+/// One picture in the window: an experiment with its renderer.
 class Pane {
  public:
     Pane(const gl::Context& context, ivec2 size) : renderer_({size.x, size.y}, &context), size_(size) {}
@@ -34,7 +34,7 @@ class Pane {
 
     void draw(const Experiment& experiment, const Camera& camera, const Look3d& look, const Traces& traces);
 
-    /// Into the framebuffer that is bound, its lower left corner there.
+    /// Copies it into the framebuffer that is bound, with its lower left corner there.
     void show(ivec2 corner) const { renderer_.show(corner); }
     Image image() const { return renderer_.image(); }
     ivec2 size() const { return size_; }
@@ -46,8 +46,8 @@ class Pane {
     ivec2 size_;
     std::optional<Scenery> scenery_;
     Quality quality_;
-    Experiment::Shapes shapes_;              // that are shown
-    std::vector<std::vector<uvec2>> edges_;  // of the surfaces, once somebody wants to see them
+    Experiment::Shapes shapes_;              // the shapes that are drawn
+    std::vector<std::vector<uvec2>> edges_;  // of the surfaces, made on first use
     std::vector<std::vector<Dent>> dents_;
 };
 

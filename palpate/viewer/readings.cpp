@@ -30,7 +30,7 @@ void Readings::measure(const Experiment& experiment, bool moves) {
         largest_speed = std::max(largest_speed, stats.largest_speed);
     if (pictures_++ % 15 != 0) return;
     memory = experiment.play().memory();
-    energy.reset();  // from a GPU the nodes would have to be read
+    energy.reset();  // it would have to be read back from the GPU
     if (!on_gpu(experiment.models().simulation.backend)) energy = experiment.energy();
 }
 

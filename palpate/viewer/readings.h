@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// The last few seconds of something that is measured once a picture.
+/// The last few seconds of a quantity that is measured once a picture: a ring buffer.
 class Recent {
  public:
     static constexpr std::size_t length = 180;
@@ -29,20 +29,20 @@ class Recent {
     std::size_t next_ = 0, count_ = 0;
 };
 
-/// What an experiment takes and does, from picture to picture.
+/// The measurements of an experiment, from picture to picture.
 class Readings {
  public:
     Recent simulate, map, draw;    // ms a picture
-    Recent pace;                   // s of the scene a second
-    std::optional<Energy> energy;  // none where that would have to be read from a GPU
+    Recent pace;                   // simulated s per s
+    std::optional<Energy> energy;  // none if it would have to be read back from the GPU
     double largest_speed = 0;      // m/s
-    std::size_t memory = 0;        // bytes, of all moving states
+    std::size_t memory = 0;        // bytes, of all states
 
-    /// Once a picture. `moves`: it is not paused.
+    /// To be called once a picture. `moves`: it is not paused.
     void measure(const Experiment& experiment, bool moves);
 
  private:
-    double simulated_ = 0, mapped_ = 0, measured_ = 0, paced_ = 0;  // s, until the picture before
+    double simulated_ = 0, mapped_ = 0, measured_ = 0, paced_ = 0;  // s, at the picture before
     long pictures_ = 0;
 };
 

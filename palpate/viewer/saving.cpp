@@ -12,7 +12,7 @@ namespace {
 
 constexpr long frames_per_picture = 2;  // of a film: 30 pictures a second
 
-// The first with a number that is free.
+// The first numbered name that is free.
 std::filesystem::path free_name(const Experiment& experiment, const std::filesystem::path& folder,
                                 const std::string& ending) {
     const std::string stem = std::filesystem::path(experiment.source().name).stem().string();
@@ -26,7 +26,7 @@ std::filesystem::path free_name(const Experiment& experiment, const std::filesys
 std::string text_of(const Experiment& experiment) {
     experiment.require_text();
     std::vector<Change> changes = experiment.changes();
-    std::erase(changes, all_cores());  // this machine's, not the scene's
+    std::erase(changes, all_cores());  // a setting of this machine, not of the scene
     return changed(experiment.source(), changes);
 }
 

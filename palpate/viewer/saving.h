@@ -9,22 +9,23 @@
 
 namespace palpate {
 
-/// What a person may write of an experiment.
+/// What can be saved of an experiment.
 enum class Output { scene, picture, film, surface, recording };
 
-/// Writes that under names that nothing has yet, and says which.
+/// Saves outputs under new names, and says which.
 class Saving {
  public:
     explicit Saving(Message& message) : message_(message) {}
     ~Saving();
 
-    /// Into a folder; a scene beside the one that it came from, since it names files from there. A film
-    /// begins so, or ends. Throws Error.
+    /// Saves into a folder; a scene goes beside the original one, because its file names are relative to
+    /// that. A film begins or ends. Throws Error.
     void save(Output what, const Experiment& experiment, const std::filesystem::path& folder,
               const std::function<Image()>& picture);
 
     bool is_filming() const { return bool(film_); }
-    /// After each frame of the scene: films a picture where one is due. All are as large as the first.
+    /// To be called after each frame of the scene: films a picture if one is due. All have the size of the
+    /// first.
     void frame_done(const std::function<Image()>& picture);
 
  private:
@@ -35,7 +36,7 @@ class Saving {
     std::unique_ptr<Film> film_;
     std::filesystem::path film_name_;
     ivec2 film_size_ = ivec2(0);
-    long frames_ = 0;  // of the scene since the film began
+    long frames_ = 0;  // frames of the scene since the film began
 };
 
 }  // namespace palpate

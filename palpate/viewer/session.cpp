@@ -76,7 +76,7 @@ bool Session::compare(Compared& asked) {
     return true;
 }
 
-bool Session::advance(const Hands& hands) {
+bool Session::advance(const Interaction& hands) {
     if (replay_) return replay_frame();
     auto go_on = [&](Experiment& one, const std::string& before, const std::string& after) {
         if (!one.advance(hands)) message_.say(before + one.trouble() + after, true);

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// What is open: an experiment, perhaps the same once more beside it, perhaps a recording that leads it; and
-/// what is being opened meanwhile.
+/// What is open: an experiment, possibly a second one beside it for comparison, possibly a recording that is
+/// replayed; and what is being opened.
 class Session {
  public:
     Session(const gl::Context& context, Message& message) : context_(context), message_(message) {}
@@ -23,23 +23,24 @@ class Session {
     void replay(Recording recording);
     const Import* importing() const { return import_.get(); }
     void cancel_import();
-    /// What has been built meanwhile; nothing if there is none, or if it failed, which is said.
+    /// The scene that has been built meanwhile; nothing if there is none, or if it failed, which the message
+    /// says.
     std::optional<Prepared> take_import();
 
-    /// In the place of what was open. Throws Error, and that stays.
+    /// Replaces what was open. Throws Error; then nothing has changed.
     void begin(Prepared prepared);
 
     bool replaying() const { return bool(replay_); }
     void stop_replaying() { replay_.reset(); }
 
-    /// Puts beside it what is asked for, if it is not there; then true. Where that cannot be, nothing is
-    /// asked for any more.
+    /// Makes the experiment for comparison, if needed; then true. If that fails, `asked` is reset.
     bool compare(Compared& asked);
-    /// The next compare() makes it anew.
+    /// Makes the next compare() make it again.
     void compare_anew() { compared_ = {}; }
 
-    /// One frame, of all, under these hands; or as the recording says. False after its last. Throws Error.
-    bool advance(const Hands& hands);
+    /// Advances all by one frame with this interaction, or as recorded. False after the recording's last
+    /// frame. Throws Error.
+    bool advance(const Interaction& hands);
 
  private:
     bool replay_frame();
@@ -48,7 +49,7 @@ class Session {
     Message& message_;
     std::unique_ptr<Import> import_;
     std::unique_ptr<Experiment> experiment_, beside_;
-    Compared compared_;                         // what beside_ is
+    Compared compared_;                         // what beside_ was made for
     std::optional<Recording> replay_, coming_;  // what is replayed; what import_ is for
 };
 

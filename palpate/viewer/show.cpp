@@ -16,7 +16,7 @@ void show(Prepared prepared, const ShowSettings& settings) {
 }
 
 void show(const std::string& file, const std::vector<Change>& changes, const ShowSettings& settings) {
-    // What is wrong with a scene is said here rather than in a window.
+    // Errors of a scene are thrown here rather than shown in a window.
     const bool recorded = file.ends_with(".json"), named = !file.empty() && !recorded;
     const SceneText scene = named ? find_scene(file) : SceneText{};
     if (named) parse_scene(scene, changes);

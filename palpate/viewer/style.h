@@ -3,13 +3,13 @@
 
 namespace palpate {
 
-// Blue and orange, which all people can tell apart; what warns also says so in words.
+// Blue and orange, which are distinguishable with colour blindness; warnings also say so in words.
 inline const ImVec4 accent(0.16f, 0.47f, 0.76f, 1), warning(0.95f, 0.62f, 0.10f, 1),
     quiet(0.66f, 0.69f, 0.74f, 1);
 
 inline constexpr float letters = 15, panel_width = 330;  // pixels, times the scale
 
-/// What the control before this is for, while the pointer is over it.
+/// A tooltip for the control before this.
 inline void about(const char* text) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
 }

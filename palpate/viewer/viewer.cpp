@@ -44,7 +44,7 @@ void Viewer::let_go() {
 
 // ---- changes ----
 
-// A change of what moves; the scene beside it goes on from there. Not in a recording that is replayed.
+// Changes the experiment; the one beside it continues from there. Not during a replay.
 void Viewer::alter(const std::function<void()>& how, const std::string& said) {
     if (!experiment()) return;
     if (replaying()) return message_.say("a recording is replayed; press R to begin anew");
@@ -96,7 +96,7 @@ void Viewer::step_once() {
     if (experiment()) one_frame();
 }
 
-// ---- going on ----
+// ---- advancing ----
 
 void Viewer::advance(int frames) {
     if (auto prepared = session_.take_import()) message_.attempt([&] { begin(std::move(*prepared)); });
@@ -113,7 +113,7 @@ void Viewer::advance(int frames) {
 void Viewer::one_frame() {
     bool goes_on = false;
     const bool done = message_.attempt([&] {
-        Hands hands;
+        Interaction hands;
         if (!replaying()) {
             holds_.follow(*experiment(), feeling_.device(*experiment(), options), options);
             holds_.add_to(hands);
@@ -126,7 +126,7 @@ void Viewer::one_frame() {
     saving_.frame_done([&] { return image(); });
 }
 
-// ---- what a pointer does ----
+// ---- the pointer ----
 
 void Viewer::press(Button button, bool shift, bool alt) {
     if (!experiment() || drag_ != Drag::none) return;
@@ -143,7 +143,7 @@ void Viewer::press(Button button, bool shift, bool alt) {
 void Viewer::reach_in() {
     const auto hit = pick(sight().ray(), experiment()->play().skins());
     if (!hit) {
-        drag_ = Drag::turn;  // beside everything
+        drag_ = Drag::turn;  // on the background
         return;
     }
     touched_ = true;
@@ -198,7 +198,7 @@ void Viewer::move_pointer(vec2 pixel) {
     if (drag_ == Drag::turn || drag_ == Drag::pan) {
         drag_ == Drag::turn ? views_.orbit.turn(by, size().y) : views_.orbit.pan(by, size().y);
         turned();
-    } else if (holds_.has_own()) {  // what feels follows once a picture
+    } else if (holds_.has_own()) {  // a touch follows once a picture
         views_.wake();
         holds_.follow(sight());
     }
@@ -246,11 +246,11 @@ void Viewer::reset_camera() {
     turned();
 }
 
-// ---- to show ----
+// ---- for drawing ----
 
 std::vector<Arrow> Viewer::arrows() const {
     if (!experiment()) return {};
-    std::vector<Arrow> arrows = holds_.arrows(experiment()->play().pushes());
+    std::vector<Arrow> arrows = holds_.arrows(experiment()->play().interaction_forces());
     if (const auto arrow = feeling_.arrow(); arrow && options.mode == Mode::dent) arrows.push_back(*arrow);
     return arrows;
 }

@@ -1,8 +1,8 @@
 #pragma once
-#include "palpate/viewer/feeling_hand.h"
 #include "palpate/viewer/readings.h"
 #include "palpate/viewer/saving.h"
 #include "palpate/viewer/session.h"
+#include "palpate/viewer/viewer_touch.h"
 #include "palpate/viewer/views.h"
 
 #include <filesystem>
@@ -14,27 +14,27 @@ namespace palpate {
 
 enum class Button { left, middle, right };
 
-/// What the window shows and what a pointer does in it, without a window: whoever has one, or a test, tells
-/// it of events, lets it go on, and asks it to draw. All in one thread.
+/// The content of the viewer's window without the window: a window or a test sends it events, advances it,
+/// and lets it draw. All on one thread.
 class Viewer {
  public:
-    /// Draws in that context, which must outlive it.
+    /// `context`: for drawing; it must outlive the viewer.
     Viewer(const gl::Context& context, ivec2 size)
         : session_(context, message_), views_(context, size, session_, options) {}
 
     Options options;
-    std::filesystem::path folder = ".";  // where what is saved goes
+    std::filesystem::path folder = ".";  // where outputs are saved
 
     // ---- what is open ----
 
-    /// Begins to build a scene, and shows it when it is ready; until then what was open goes on.
+    /// Begins to build a scene, and shows it when it is ready; until then the one that is open continues.
     void open(SceneText source, std::vector<Change> changes = {}) {
         session_.open(std::move(source), std::move(changes));
     }
-    /// A scene, a mesh, a volume or a recording. What cannot be opened is said in message().
+    /// Opens a scene, a mesh, a volume or a recording. If that fails, message() says why.
     void open_file(const std::filesystem::path& file) noexcept;
     void replay(Recording recording) { session_.replay(std::move(recording)); }
-    /// Shows at once what was built. Throws Error, and what was open stays.
+    /// Shows a built scene at once. Throws Error; then nothing has changed.
     void begin(Prepared prepared);
     void cancel_import() { session_.cancel_import(); }
     const Import* importing() const { return session_.importing(); }
@@ -43,42 +43,42 @@ class Viewer {
     const Experiment* beside() const { return session_.beside(); }
     bool replaying() const { return session_.replaying(); }
 
-    // ---- what a person does; places in pixels from the window's upper left corner ----
+    // ---- user input; positions are in pixels from the window's upper left corner ----
 
-    /// The picture is as large, and begins so far to the right in the window, beside its controls.
+    /// Sets the size of the picture, and how far to the right it begins, beside the controls.
     void resize(ivec2 size, int left = 0) { views_.resize(size, left); }
     void move_pointer(vec2 pixel);
     void press(Button button, bool shift = false, bool alt = false);
     void release(Button button);
     void wheel(float notches);
-    /// What it holds stays there, or if it holds nothing, all that was left goes.
+    /// Leaves the present hold in place; without one, ends all that were left.
     void keep();
     void frame_selection();
     void reset_camera();
     void pause() { options.paused = !options.paused; }
     void step_once();
     void restart();
-    /// The latest change of the scene, or the latest dent that stayed.
+    /// Undoes the latest change of the scene, or the latest lasting dent.
     void undo();
     bool can_undo() const;
     void redo();
     void return_to_good();
-    /// Changes of the scene. What cannot be is said in message(), and nothing changes.
+    /// Changes the scene. If that fails, message() says why, and nothing changes.
     void change(const std::vector<Change>& changes, bool again = false);
 
     void save(Output what);
     bool filming() const { return saving_.is_filming(); }
 
-    // ---- going on ----
+    // ---- advancing ----
 
-    /// So many frames of 1/60 s, if it is not paused; and whatever has become ready meanwhile.
+    /// Advances by frames of 1/60 s, unless paused; and takes what has been built meanwhile.
     void advance(int frames);
-    /// Into the framebuffer that is bound.
+    /// Draws into the framebuffer that is bound.
     void draw();
-    /// What is drawn, as it would be without a draft's haste, and without a window's frame or controls.
+    /// The picture in full quality, without the window's frame or controls.
     Image image();
 
-    // ---- to show ----
+    // ---- for drawing ----
 
     ivec2 size() const { return views_.size(); }
     int left() const { return views_.left(); }
@@ -88,8 +88,8 @@ class Viewer {
     std::vector<Arrow> arrows() const;
     std::vector<Hold> holds() const { return holds_.all(); }
     bool is_holding() const { return holds_.has_own() || feeling_.is_denting(); }
-    bool touched() const { return touched_; }  // whether anybody has reached in yet
-    const FeltHand* feeling() const { return feeling_.hand(); }
+    bool touched() const { return touched_; }  // whether the user has interacted yet
+    const SceneTouch* feeling() const { return feeling_.hand(); }
     const Readings& readings() const { return readings_; }
 
  private:
@@ -109,15 +109,15 @@ class Viewer {
     Session session_;
     Views views_;
     Holds holds_;
-    FeelingHand feeling_{message_};
+    ViewerTouch feeling_{message_};
     Saving saving_{message_};
     Readings readings_;
 
     vec2 pointer_ = vec2(0);
     Drag drag_ = Drag::none;
-    Button drag_button_ = Button::left;  // that it goes on with
+    Button drag_button_ = Button::left;  // the button that began it
     bool touched_ = false;
-    std::vector<vec3> selected_;  // m, around what was last taken hold of
+    std::vector<vec3> selected_;  // m, around what was last grasped
 };
 
 }  // namespace palpate

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr float usual = 1.3f;  // times as wide as high, for which scenes choose their angles
+constexpr float usual = 1.3f;  // the aspect ratio for which scenes choose their angles
 constexpr double calm = 0.4;   // s without motion, after which a picture is drawn in full
 
 // Two pictures side by side.
@@ -94,11 +94,11 @@ std::optional<float> Views::draw(const Traces& traces, bool always, bool may_be_
     pane_.show({left_, 0});
     if (session_.beside()) other_pane_.show({left_ + view_size().x, 0});
     context_.finish();
-    if (before != drawn_of_) return std::nullopt;  // it finds out how deep the grooves are
+    if (before != drawn_of_) return std::nullopt;  // computing the ambient occlusion took time
     return float(1000 * (now() - start));
 }
 
-// Stereo shows the left view's renderer twice; the other picture goes beside it at once.
+// Stereo uses the left view's renderer twice, so its picture is copied at once.
 void Views::draw_panes(const Quality& quality, const Traces& traces) {
     const Experiment &experiment = *session_.experiment(), *beside = session_.beside();
     drawn_of_ = experiment.shapes();
@@ -118,7 +118,7 @@ void Views::draw_panes(const Quality& quality, const Traces& traces) {
 }
 
 Image Views::image(const Traces& traces) {
-    drawn_ = 0;  // what the panes hold then is not what the window shows
+    drawn_ = 0;  // the panes no longer hold what the window shows
     draw_panes({}, traces);
     const Image left = pane_.image();
     if (session_.beside()) return beside_each_other(left, other_pane_.image());

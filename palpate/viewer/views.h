@@ -5,34 +5,35 @@
 
 namespace palpate {
 
-/// What is open as it is seen: in one picture, or in two side by side, from where an orbit leads.
+/// The views of what is open: one picture, or two side by side, from an orbit camera.
 class Views {
  public:
     Views(const gl::Context& context, ivec2 size, const Session& session, const Options& options);
 
     Orbit orbit;
 
-    /// So large, and so far to the right in the window.
+    /// Sets the size, and how far to the right in the window it begins.
     void resize(ivec2 size, int left);
     ivec2 size() const { return size_; }
     int left() const { return left_; }
-    /// Of one of the pictures side by side.
+    /// The size of one of the pictures.
     ivec2 view_size() const;
-    /// Of one of them. Where they are narrow it sees as much across all the same.
+    /// The camera of one of them. In narrow pictures it widens the angle, to show the same width.
     Camera camera() const;
-    /// Of who points at a pixel; side by side the same point is in both halves.
+    /// The view with the pointer at a pixel; side by side, both halves show the same point.
     Sight sight(vec2 pixel) const;
 
-    /// From where the scene itself says.
+    /// Returns to the scene's own camera.
     void go_home();
 
-    /// Something has moved, or looks otherwise.
+    /// Must be called when something has moved or looks different.
     void wake();
 
-    /// Into the framebuffer that is bound, as a draft where the options say so. `always`: even if nothing has
-    /// moved since. Returns the ms that it took; nothing for a picture of another mesh, which takes longer.
+    /// Draws into the framebuffer that is bound, as a draft if the options say so. `always`: even if nothing
+    /// has moved. Returns the ms that it took; nothing for the first picture of new meshes, which takes
+    /// longer.
     std::optional<float> draw(const Traces& traces, bool always, bool may_be_draft);
-    /// The same in full, without a window's frame or controls.
+    /// The same in full quality, without the window's frame or controls.
     Image image(const Traces& traces);
 
  private:

@@ -20,17 +20,18 @@
 namespace palpate {
 namespace {
 
-constexpr double round_seconds = 1.0 / 60;  // no faster than that
-constexpr int most_frames = 2;              // of the scene a round: behind real time rather than stuck
+constexpr double round_seconds = 1.0 / 60;  // the shortest round
+constexpr int most_frames = 2;              // frames of the scene per round: rather slower than real time
+                                            // than unresponsive
 
-// What GLFW says of its last failure.
+// GLFW's description of its last error.
 std::string complaint() {
     const char* text = nullptr;
     glfwGetError(&text);
     return text ? text : "no reason given";
 }
 
-// GLFW itself, as long as there is a window.
+// Initialises GLFW, for the lifetime of a window.
 struct Glfw {
     Glfw() {
         if (!glfwInit())
@@ -68,7 +69,7 @@ ivec2 pixels(GLFWwindow* window) {
     return size;
 }
 
-// Places come in units of the screen, of which a pixel may be a part.
+// Converts from screen units to pixels, which may differ.
 vec2 pixels_a_unit(GLFWwindow* window) {
     ivec2 units(0);
     glfwGetWindowSize(window, &units.x, &units.y);
@@ -91,7 +92,7 @@ struct Window::Parts {
     Gui gui;
     double last = now();
     double due = 0;        // frames
-    bool repeats = false;  // a key that is held down: what it wrote, it writes again and again
+    bool repeats = false;  // a key that is held down repeats
 
     explicit Parts(ivec2 size)
         : window(make_window(size)),
@@ -103,7 +104,7 @@ struct Window::Parts {
         listen();
     }
     ~Parts() {
-        ImGui_ImplGlfw_Shutdown();  // the window itself goes with GLFW, after all that lives in its context
+        ImGui_ImplGlfw_Shutdown();  // the window is destroyed with GLFW, after everything in its context
     }
 
     static Parts& of(GLFWwindow* window) { return *static_cast<Parts*>(glfwGetWindowUserPointer(window)); }
@@ -115,7 +116,7 @@ struct Window::Parts {
     void begin_gui();
 };
 
-// ImGui hears of everything; the viewer of what is not meant for a control.
+// ImGui gets all events; the viewer gets those that are not meant for a control.
 void Window::Parts::listen() {
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
         of(w).viewer.move_pointer(vec2(x, y) * pixels_a_unit(w));
@@ -142,7 +143,7 @@ void Window::Parts::listen() {
     });
 }
 
-// What writes no letter, and what Ctrl goes with; the latter by what is printed on the key.
+// Keys that type no letter, and keys with Ctrl; the latter by what is printed on them.
 void Window::Parts::key(int key, int scancode, int mods) {
     const bool control = mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER), shift = mods & GLFW_MOD_SHIFT;
     if (key == GLFW_KEY_HOME) gui.key(viewer, Gui::home_key, false, shift);
@@ -187,7 +188,7 @@ Gui& Window::gui() { return parts_->gui; }
 
 bool Window::round() {
     Parts& p = *parts_;
-    // Waits for its time, and for longer if nothing moves.
+    // Waits until it is due, and for longer if nothing moves.
     const bool idle = p.viewer.options.paused && !p.viewer.importing() && !p.viewer.is_holding();
     const double wait = p.last + (idle ? 3 : 1) * round_seconds - now();
     wait > 1e-4 ? glfwWaitEventsTimeout(wait) : glfwPollEvents();
@@ -199,7 +200,7 @@ bool Window::round() {
     p.due -= frames;
     p.viewer.advance(frames);
     const ivec2 size = pixels(p.window);
-    if (size.x < 1 || size.y < 1) return true;  // it is an icon
+    if (size.x < 1 || size.y < 1) return true;  // it is minimised
     const int beside = p.gui.beside(p.viewer, size.x);
     p.viewer.resize({size.x - beside, size.y}, beside);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);

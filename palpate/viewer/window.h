@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// The viewer in a window of the desktop.
+/// The viewer in a desktop window.
 class Window {
  public:
     /// Throws Error if there is no display, or no OpenGL 4.5 on it.
@@ -18,10 +18,10 @@ class Window {
     Viewer& viewer();
     Gui& gui();
 
-    /// One round: what a person did, what moved meanwhile, a picture of it. False once it is to close.
+    /// One round of the event loop: handles input, advances, draws. False once the window shall close.
     bool round();
 
-    /// Round by round, until it is closed.
+    /// Runs the event loop until the window is closed.
     void run();
 
  private:

@@ -38,8 +38,8 @@ Experiment going(int frames, const std::string& text = beam, std::vector<Change>
     return experiment;
 }
 
-Hands pulling(int node, vec3 to) {
-    Hands hands;
+Interaction pulling(int node, vec3 to) {
+    Interaction hands;
     hands.pulls.push_back({0, {node, to, vec3(0), 5}});
     return hands;
 }
@@ -199,13 +199,14 @@ TEST(Experiment, HandsPullAndFeelIt) {
     const vec3 to = vec3(before) + vec3(0, 0.03f, 0);
     for (int f = 0; f < 90; ++f) experiment.advance(pulling(8, to));
     EXPECT_GT(place(experiment, 8).y, before.y + 0.005);
-    ASSERT_EQ(experiment.play().pushes().pulls.size(), 1u);
+    ASSERT_EQ(experiment.play().interaction_forces().pulls.size(), 1u);
     // The force on the hand: the spring's, as far as it is stretched, within what still swings.
     const dvec3 spring = 5.0 * (place(experiment, 8) - dvec3(to));
-    EXPECT_TRUE(glm::distance(experiment.play().pushes().pulls[0], spring) < 0.1 * glm::length(spring))
-        << experiment.play().pushes().pulls[0].y << " " << spring.y;
+    EXPECT_TRUE(glm::distance(experiment.play().interaction_forces().pulls[0], spring) <
+                0.1 * glm::length(spring))
+        << experiment.play().interaction_forces().pulls[0].y << " " << spring.y;
     experiment.advance();
-    EXPECT_TRUE(experiment.play().pushes().pulls.empty());
+    EXPECT_TRUE(experiment.play().interaction_forces().pulls.empty());
 }
 
 TEST(Experiment, TakesAnyNumberOfHandsThatAreNotTooStrong) {
@@ -214,14 +215,14 @@ TEST(Experiment, TakesAnyNumberOfHandsThatAreNotTooStrong) {
         "[[tool]]\nradius = 0.02\npath = [[0, 1, 1, 1], [9, 1, 1, 1]]\n"
         "[[tool]]\nkind = \"drag\"\nnear = [0.08, 0, 0]\npath = [[0, 0.1, 0, 0], [9, 0.1, 0, 0]]\n";
     Experiment experiment = going(1, tools);
-    Hands hands;
+    Interaction hands;
     for (int i = 0; i < 20; ++i) {
         hands.presses.push_back({vec3(1), vec3(0), 0.01f, 1});
         hands.pulls.push_back(pulling(8, vec3(0.1f)).pulls[0]);
     }
     EXPECT_TRUE(experiment.takes(hands));
     EXPECT_TRUE(experiment.advance(hands));
-    Hands more;
+    Interaction more;
     for (float wrong : {-1.0f, 1e30f, NAN}) {
         more = hands;
         more.pulls[2].push.stiffness = wrong;
@@ -301,11 +302,11 @@ TEST(Experiment, OfModelsItDoesWhatNeedsNoText) {
     EXPECT_EQ(made.time(), 0);
     both(advance);
     EXPECT_GT(made.stable_step(0), 0);
-    expect_refused("made without a mass", [&] { made.pin(0, {0}, false); });
-    expect_refused("no text", [&] { made.change({"body.1.damping=3"}); });
-    expect_refused("no text", [&] { made.beside({}); });
-    expect_refused("no text", [&] { made.recording(); });
-    expect_refused("no text", [&] { made.replay({}); });
+    expect_refused("infinite mass", [&] { made.pin(0, {0}, false); });
+    expect_refused("without a text", [&] { made.change({"body.1.damping=3"}); });
+    expect_refused("without a text", [&] { made.beside({}); });
+    expect_refused("without a text", [&] { made.recording(); });
+    expect_refused("without a text", [&] { made.replay({}); });
 }
 
 TEST(Experiment, OfModelsWithAllThatThereMayBe) {
@@ -314,7 +315,7 @@ TEST(Experiment, OfModelsWithAllThatThereMayBe) {
     Mesh surface = hull_mesh(body);
     Embedding skin = embed(surface, body);
     models.models.push_back({body, surface, skin, {}, {}});
-    models.stills.push_back({"table", surface, {}});
+    models.static_surfaces.push_back({"table", surface, {}});
     models.moves.push_back({0, {0, 1, 2}, vec3(0)});
     pin(models.models[0].body, models.moves[0].nodes);
     models.simulation.colliders.push_back({Plane{vec3(0, 1, 0), -0.5f}});
@@ -341,9 +342,9 @@ TEST(Experiment, ABodyOfOtherNodesStartsAtRest) {
 Experiment lively() {
     Experiment experiment = going(5);
     for (int f = 0; f < 40; ++f)
-        experiment.advance(f % 3 ? pulling(8, vec3(0.09f, 0.001f * float(f), 0)) : Hands());
+        experiment.advance(f % 3 ? pulling(8, vec3(0.09f, 0.001f * float(f), 0)) : Interaction());
     experiment.change({"body.1.damping=4", "body.1.youngs_modulus=30000"});
-    Hands press;
+    Interaction press;
     press.presses.push_back({vec3(0.08f, 0.05f, 0.01f), vec3(0, -0.1f, 0), 0.01f, 200});
     for (int f = 0; f < 20; ++f) experiment.advance(press);
     experiment.change({"simulation.integrator=\"midpoint\""});
@@ -375,7 +376,7 @@ TEST(Recording, ReplaysToTheSameBits) {
 TEST(Recording, OfAnotherMotionComesOutOtherwise) {
     Recording recording = lively().recording();
     for (Input& input : recording.inputs)  // all of them, since the return undoes the first
-        if (auto* hands = std::get_if<Hands>(&input.what); hands && !hands->pulls.empty())
+        if (auto* hands = std::get_if<Interaction>(&input.what); hands && !hands->pulls.empty())
             hands->pulls[0].push.to.x += 1e-4f;
     Experiment again(prepare(recording.scene, recording.changes));
     while (again.replay(recording)) {}

@@ -49,7 +49,7 @@ void expect_as_it_says(const Scene& scene, const Models& made) {
         for (float inverse : body.inverse_mass) held += inverse == 0;
         if (!recipe.cage) EXPECT_LT(held, body.count() / 2);
     }
-    for (const Still& still : made.stills) EXPECT_GT(still.surface.triangles.size(), 0u);
+    for (const StaticSurface& still : made.static_surfaces) EXPECT_GT(still.surface.triangles.size(), 0u);
     if (scene.bodies.empty()) return;
     if (scene.colliders.empty()) EXPECT_GT(held, 0u);  // else it may stand on one
     // The heart's vessels end openly, and the dragon may stand in for itself; notes say so.

@@ -454,7 +454,7 @@ void expect_same(const Models& a, const Models& b, const std::string& after) {
         EXPECT_EQ(carried(a.models[m]), carried(b.models[m])) << after;
     }
     EXPECT_EQ(a.pivots, b.pivots) << after;
-    ASSERT_EQ(a.stills.size(), b.stills.size());
+    ASSERT_EQ(a.static_surfaces.size(), b.static_surfaces.size());
 }
 
 TEST(Rebuild, IsTheSameToTheBitAsBuilding) {

@@ -207,7 +207,7 @@ TEST(Scene, CollidersThatDoNotFit) {
     refuse("polygon = {}", {"surface and triangles"});
     refuse("polygon = { triangles = [] }", {"without a triangle"});
     refuse("polygon = { triangles = [[[0, 0, 0], [1, 0, 0]]] }", {"three corners"});
-    refuse("polygon = { triangles = [[[0, 0, 0], [1, 0, 0], [2, 0, 0]]] }", {"no area"});
+    refuse("polygon = { triangles = [[[0, 0, 0], [1, 0, 0], [2, 0, 0]]] }", {"degenerate triangle"});
     refuse("polygon = { surface = \"x.ply\", thickness = 0 }", {"thickness"});
     refuse("polygon = { triangles = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], units = \"m\" }", {"units"});
     refuse("field = {}", {"field without a surface"});

@@ -171,7 +171,7 @@ TEST(Scene, WhatPeopleWriteInsteadOfTomlIsExplained) {
     const std::string body = "[[body]]\nname = \"cube\"\ndims = [4, 4, 4]\nspacing = 0.01\ndensity = 1000\n";
     for (const auto& [line, words] : std::vector<std::array<std::string, 2>>{
              {"youngs_modulus = 20 kPa", "write the number alone, without kPa: youngs_modulus is in Pa"},
-             {"youngs_modulus = 20,000", "with a point: 20.000, or 20000 if the comma parts thousands"},
+             {"youngs_modulus = 20,000", "with a point: 20.000, or 20000 if the comma separates thousands"},
              {"youngs_modulus = \"20,000\"", "20.000, or 20000"},
              {"damping = 0,250", "with a point: 0.250"},
              {"mapping = constant", "write texts in quotes: mapping = \"constant\""},

@@ -247,7 +247,7 @@ TEST_F(ViewerTest, ShowsWhatAProgramMade) {
          {+[](Viewer& one) { one.save(Output::scene); }, +[](Viewer& one) { one.save(Output::recording); },
           +[](Viewer& one) { one.change({"body.1.damping=3"}); }}) {
         act(viewer);
-        EXPECT_NE(viewer.message().text.find("no text of a scene"), std::string::npos)
+        EXPECT_NE(viewer.message().text.find("a scene without a text"), std::string::npos)
             << viewer.message().text;
     }
     viewer.advance(5);

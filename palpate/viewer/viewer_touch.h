@@ -1,7 +1,7 @@
 #pragma once
-#include "palpate/run/felt_hand.h"
+#include "palpate/run/scene_touch.h"
 #include "palpate/touch/drivers.h"
-#include "palpate/viewer/hand.h"
+#include "palpate/viewer/hold.h"
 #include "palpate/viewer/message.h"
 
 #include <memory>
@@ -10,47 +10,47 @@
 
 namespace palpate {
 
-/// The hand that feels while there is one: the pointer's where it dents, or a device's; and the dents that
-/// the pointer's left.
-class FeelingHand {
+/// The viewer's haptic touch, if there is one: of the pointer in the mode dent, or of a device. It also keeps
+/// the dents of the pointer's touch.
+class ViewerTouch {
  public:
-    explicit FeelingHand(Message& message) : message_(message) {}
+    explicit ViewerTouch(Message& message) : message_(message) {}
 
-    const FeltHand* hand() const { return hand_.get(); }
+    const SceneTouch* hand() const { return hand_.get(); }
 
-    /// Once a picture: becomes what the options ask for, follows the pointer and feels what lies there. Where
-    /// a device cannot be opened, that is said, and the options ask for it no more.
+    /// To be called once a picture: makes the touch that the options select, follows the pointer, and feels
+    /// the surfaces there. If a device cannot be opened, a message says so, and the options are reset.
     void advance(const Experiment& experiment, Options& options, const Sight& sight);
-    /// Its motors cool down while there is none.
+    /// Drops the touch; the warmth of its motors is remembered.
     void drop();
 
-    /// Another view of the same.
+    /// The view has changed.
     void look(const Sight& sight);
 
     // ---- the pointer's ----
 
     bool is_denting() const { return denting_; }
-    /// It goes into the surface under the pointer. False if it is not the pointer's.
+    /// Begins to press into the surface under the pointer. False if the touch is not the pointer's.
     bool begin_dent(const Experiment& experiment, float tip, const Sight& sight);
     void deepen(const Experiment& experiment, float notches, float tip, const Sight& sight);
     void end_dent(const Experiment& experiment, float tip, const Sight& sight);
 
-    /// The latest dent that is still there, if no change of the scene came after it.
+    /// Undoes the latest dent that still exists, if the scene has not been changed after it.
     bool can_undo(const Experiment* experiment) const { return last_dent(experiment) != nullptr; }
     void undo(const Experiment* experiment);
 
-    // ---- the surfaces are at once where they are now ----
+    // ---- the surfaces have jumped ----
 
     void expect_jump();
-    void begin_anew();  // and have no dents
+    void begin_anew();  // and have lost their dents
 
-    /// What it says to whoever pulls or presses by it; nothing where it is the pointer's.
+    /// The state of a device, for pulling and pressing with it; nothing if the touch is the pointer's.
     std::optional<Felt> device(const Experiment& experiment, const Options& options) const;
     std::optional<Arrow> arrow() const;
     void add_to(Traces& traces, std::size_t surfaces, float tip) const;
 
  private:
-    // What it was made of.
+    // What the touch was made from.
     struct Kind {
         std::string device, file;
         float tip = 0;  // m
@@ -60,8 +60,8 @@ class FeelingHand {
     };
     // A dent that was pressed in, from the pointer's press to its release.
     struct Stroke {
-        int number;           // of the hand that feels
-        std::size_t changes;  // how many of the scene came before it
+        int number;           // of the touch
+        std::size_t changes;  // how many changes of the scene came before it
     };
     void become(const Experiment& experiment, Options& options, const Sight& sight);
     void make(const Experiment& experiment, const Sight& sight);
@@ -69,16 +69,16 @@ class FeelingHand {
     const Stroke* last_dent(const Experiment* experiment) const;
 
     Message& message_;
-    std::unique_ptr<FeltHand> hand_;
+    std::unique_ptr<SceneTouch> hand_;
     Kind kind_;
-    Warmth warmth_;  // of the motors of the one before
+    Warmth warmth_;  // of the motors of the last touch
     std::vector<Stroke> strokes_;
 
-    Mouse* mouse_ = nullptr;       // hand_'s, if that is its device
-    ivec2 looked_ = ivec2(0);      // the size of the picture that it knows
-    std::optional<vec2> pointed_;  // the pixel that it was told of in this view,
-    float depth_ = 0;              // m from the eye, along the view, of where it was told to be,
-    vec3 place_ = vec3(0);         // m, and that place
+    Mouse* mouse_ = nullptr;       // the device of hand_, if it is one
+    ivec2 looked_ = ivec2(0);      // the size of the picture that the mouse knows
+    std::optional<vec2> pointed_;  // the last pixel that it was sent in this view,
+    float depth_ = 0;              // m, the depth of that place before the eye,
+    vec3 place_ = vec3(0);         // m, and the place
     bool denting_ = false;
     float push_ = 0;  // m, how deep it dents
 };

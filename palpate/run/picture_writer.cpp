@@ -1,4 +1,4 @@
-#include "palpate/run/show.h"
+#include "palpate/run/picture_writer.h"
 
 #include "palpate/base/clock.h"
 #include "palpate/base/files.h"
@@ -15,7 +15,8 @@ constexpr int pictures_per_second = 30;  // of a film
 
 }  // namespace
 
-Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, const gl::Context* context)
+PictureWriter::PictureWriter(const Scene& scene, const Models& made, const RunSettings& settings,
+                             const gl::Context* context)
     : name_(scene.name),
       settings_(settings),
       renderer_({settings.width, settings.height}, context),
@@ -25,9 +26,9 @@ Show::Show(const Scene& scene, const Models& made, const RunSettings& settings, 
         film_ = std::make_unique<Film>(settings.video, settings.width, settings.height, pictures_per_second);
 }
 
-const std::string& Show::renderer() const { return renderer_.context().renderer(); }
+const std::string& PictureWriter::renderer() const { return renderer_.context().renderer(); }
 
-bool Show::frame_done(double time, const Play& play, Report::Seconds& seconds) {
+bool PictureWriter::frame_done(double time, const Play& play, Report::Seconds& seconds) {
     const bool film_wants = film_ && time >= next_in_film_ - 1e-9;
     const bool images_want = !settings_.images.empty() && time >= next_image_ - 1e-9;
     if (!film_wants && !images_want) return false;
@@ -39,7 +40,7 @@ bool Show::frame_done(double time, const Play& play, Report::Seconds& seconds) {
     }
     Timed timed(seconds.write);
     for (; film_wants && time >= next_in_film_ - 1e-9; next_in_film_ += 1.0 / pictures_per_second)
-        film_->add(image);  // several times, where frames are longer than that
+        film_->add(image);  // several times, if frames are longer than that
     if (images_want) {
         const std::string name = fmt::format("{}-{:05.2f}s.png", name_, time);
         write_png(image, settings_.images / name);
@@ -49,7 +50,7 @@ bool Show::frame_done(double time, const Play& play, Report::Seconds& seconds) {
     return true;
 }
 
-void Show::finish() {
+void PictureWriter::finish() {
     if (film_) film_->finish();
 }
 

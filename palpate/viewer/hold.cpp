@@ -1,4 +1,4 @@
-#include "palpate/viewer/hand.h"
+#include "palpate/viewer/hold.h"
 
 #include "palpate/base/error.h"
 #include "palpate/run/run.h"
@@ -32,8 +32,7 @@ Hold Hold::pulling(const Experiment& experiment, const Hit& hit) {
         if (distance(node) < distance(nearest[0]) + 1.5f * body.spacing)
             hold.threads_.push_back({node, positions[std::size_t(node)] - hit.place,
                                      strength / body.inverse_mass[std::size_t(node)]});
-    if (hold.threads_.empty())
-        throw Error("no node to pull that is free", "body " + body.name, "let go of some pins");
+    if (hold.threads_.empty()) throw Error("no free node to pull", "body " + body.name, "release some pins");
     hold.body_ = hit.surface;
     hold.nodes_ = body.count();
     hold.fastest_ = 3 * width_of(body);
@@ -62,7 +61,7 @@ Hold Hold::pressing(const Experiment& experiment, const Hit& hit, const Ray& ray
     return hold;
 }
 
-void Hold::add_to(Hands& hands) {
+void Hold::add_to(Interaction& hands) {
     const vec3 wish = target_ - place_;
     const float most = fastest_ * float(frame_seconds), length = glm::length(wish);
     const vec3 step = length > most ? wish * (most / length) : wish;
@@ -73,7 +72,7 @@ void Hold::add_to(Hands& hands) {
     place_ += step;
 }
 
-dvec3 Hold::force(const Pushes& pushes, std::size_t first) const {
+dvec3 Hold::force(const InteractionForces& pushes, std::size_t first) const {
     dvec3 sum(0);
     if (presses() && first < pushes.presses.size()) sum = pushes.presses[first];
     for (std::size_t i = 0; i < threads_.size() && first + i < pushes.pulls.size(); ++i)
@@ -146,13 +145,13 @@ void Holds::follow(const Experiment& experiment, const std::optional<Felt>& felt
     if (device_) device_->go_to(place);
 }
 
-void Holds::add_to(Hands& hands) {
+void Holds::add_to(Interaction& hands) {
     for (Hold& hold : left_) hold.add_to(hands);
     if (own_) own_->add_to(hands);
     if (device_) device_->add_to(hands);
 }
 
-std::vector<Arrow> Holds::arrows(const Pushes& pushes) const {
+std::vector<Arrow> Holds::arrows(const InteractionForces& pushes) const {
     std::vector<Arrow> arrows;
     std::size_t press = 0, pull = 0;
     for (const Hold& hold : all()) {

@@ -10,16 +10,16 @@
 
 namespace palpate {
 
-/// A hand that has hold of a body, or a tip of it that presses.
+/// One hold on a body: the user's hand grasps and pulls it, or presses a tip into it.
 class Hold {
  public:
-    /// Takes hold of the free nodes around a place of a body's surface. Throws Error if there are none near.
+    /// Grasps the free nodes around a place of a body's surface. Throws Error if there are none near.
     static Hold pulling(const Experiment& experiment, const Hit& hit);
 
-    /// A tip that comes along a line of sight, touches what `hit` says and goes in by half its radius.
+    /// A tip that comes along a view ray, touches the surface at `hit` and presses in by half its radius.
     static Hold pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius);
 
-    /// A tip somewhere, as strong as suits that body.
+    /// A tip anywhere, with a stiffness that suits that body.
     static Hold tip(const Experiment& experiment, std::size_t body, vec3 place, float radius);
 
     bool presses() const { return threads_.empty(); }
@@ -27,25 +27,26 @@ class Hold {
     vec3 place() const { return place_; }  // m, of the hand
     std::size_t body() const { return body_; }
 
-    /// Where it shall go. It goes there no faster than a person would move it.
+    /// Sets its target. It moves there no faster than a person would.
     void go_to(vec3 place) { target_ = place; }
     vec3 target() const { return target_; }
 
-    /// What it does in the coming frame, at whose end it is where it then goes.
-    void add_to(Hands& hands);
+    /// Adds its action in the next frame, and moves it.
+    void add_to(Interaction& hands);
 
-    /// The force on it in the last frame, N, if `first` is the number of its press or of its first pull then.
-    dvec3 force(const Pushes& pushes, std::size_t first) const;
+    /// The reaction force on it in the last frame, N, if `first` is the index of its press or of its first
+    /// pull there.
+    dvec3 force(const InteractionForces& pushes, std::size_t first) const;
     std::size_t pulls() const { return threads_.size(); }
 
-    /// Where the surface is that it pulls: at its nodes.
+    /// The mean place of the nodes that it holds.
     vec3 held(const Play& play) const;
 
-    /// Whether its nodes are still those of a body.
+    /// Whether its nodes still exist.
     bool fits(const Experiment& experiment) const;
 
  private:
-    // A node on its way, how far off the hand it is to be, and how strongly.
+    // A spring to one node, which pulls it to an offset from the hand.
     struct Thread {
         int node;
         vec3 offset;      // m
@@ -60,39 +61,39 @@ class Hold {
     vec3 place_ = vec3(0), target_ = vec3(0);
 };
 
-/// A force on a hand, where it is.
+/// A force to be shown, and where it acts.
 struct Arrow {
     vec3 at = vec3(0);     // m
     vec3 force = vec3(0);  // N
 };
 
-/// The hands that pull and press: those that were left, the pointer's own, and a device's.
+/// All holds: those that were left in place, the pointer's own, and a device's.
 class Holds {
  public:
-    /// In that order.
+    /// All, in that order.
     std::vector<Hold> all() const;
 
     bool has_own() const { return own_.has_value(); }
-    /// The pointer's, and how deep in the picture it is.
+    /// Sets the pointer's own hold, and its depth in the picture.
     void take(const Hold& hold, const Sight& sight);
-    /// It goes along with the pointer, as deep as it is; or deeper, m.
+    /// Moves it with the pointer, at the same depth; or deeper, m.
     void follow(const Sight& sight);
     void deepen(float by) { depth_ += by; }
-    void leave();    // it stays where it is
-    void release();  // it lets go
-    void clear();    // all let go
+    void leave();    // it stays in place
+    void release();  // it ends
+    void clear();    // all end
 
-    /// Without those whose bodies are others now.
+    /// Ends those whose nodes no longer exist.
     void keep_fitting(const Experiment& experiment);
 
-    /// A device that is no mouse pulls or presses, wherever it is: it takes hold of what it touches until its
-    /// first button is pressed. Nothing felt: it does neither.
+    /// Lets a device other than a mouse pull or press: it grasps what it touches, until its first button is
+    /// pressed. Without `felt` it does neither.
     void follow(const Experiment& experiment, const std::optional<Felt>& felt, const Options& options);
 
-    /// What they do in the coming frame.
-    void add_to(Hands& hands);
+    /// Adds their actions in the next frame.
+    void add_to(Interaction& hands);
 
-    std::vector<Arrow> arrows(const Pushes& pushes) const;
+    std::vector<Arrow> arrows(const InteractionForces& pushes) const;
     void add_to(Traces& traces, const Play& play, float tip) const;
 
  private:

@@ -11,24 +11,24 @@
 
 namespace palpate {
 
-/// Draws a scene as it moves, into a film and single pictures.
-class Show {
+/// Draws a moving scene into a film and single pictures.
+class PictureWriter {
  public:
-    /// In the context in which a GPU moves the bodies, if one does.
-    Show(const Scene& scene, const Models& made, const RunSettings& settings,
-         const gl::Context* context = nullptr);
+    /// `context`: that of a backend on the GPU, if there is one.
+    PictureWriter(const Scene& scene, const Models& made, const RunSettings& settings,
+                  const gl::Context* context = nullptr);
 
     /// The OpenGL driver.
     const std::string& renderer() const;
 
-    /// At time 0 it is the state before the first step. Returns whether it drew; the seconds go to what took
-    /// them.
+    /// Draws if a picture is due. At time 0 it is the state before the first step. Returns whether it drew;
+    /// adds the time to `seconds`.
     bool frame_done(double time, const Play& play, Report::Seconds& seconds);
 
-    /// After the last frame.
+    /// Must be called after the last frame.
     void finish();
 
-    /// Names of the pictures in the folder.
+    /// The names of the pictures that were written into the folder.
     const std::set<std::string>& written() const { return written_; }
 
  private:

@@ -1,13 +1,13 @@
-#include "palpate/run/felt_hand.h"
+#include "palpate/run/scene_touch.h"
 
 #include <algorithm>
 
 namespace palpate {
 namespace {
 
-constexpr double shortest = 1e-4, longest = 0.5;  // s: over which a way tells a velocity
+constexpr double shortest = 1e-4, longest = 0.5;  // s: over which a velocity can be measured
 
-// m/s, one a vertex; none where nobody knows.
+// m/s, one for each vertex; empty if unknown.
 std::vector<vec3> velocities(const std::vector<vec3>& from, const std::vector<vec3>& to, double seconds) {
     std::vector<vec3> speeds;
     if (from.size() != to.size() || seconds > longest || from == to) return speeds;
@@ -18,10 +18,11 @@ std::vector<vec3> velocities(const std::vector<vec3>& from, const std::vector<ve
 
 }  // namespace
 
-FeltHand::FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth)
+SceneTouch::SceneTouch(std::unique_ptr<Device> device, TouchSettings settings, vec3 start,
+                       const Warmth& warmth)
     : touch_(std::move(device), std::move(settings), warmth), start_(start) {}
 
-void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach) {
+void SceneTouch::feel(const std::vector<Skin>& skins, double time, float reach) {
     felt_ = touch_.felt();
     before_.resize(skins.size());
     std::vector<std::vector<vec3>> speeds;
@@ -35,17 +36,17 @@ void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach) {
     touch_.feel(Patch(surfaces, ticked ? felt_.proxy : start_, reach, time));
     for (std::size_t s = 0; s < skins.size(); ++s) before_[s] = skins[s].positions;
     before_time_ = time;
-    // Nothing is left of the old surfaces only once the touch knows the new ones.
+    // The old dents can only be removed once the touch has the new surfaces.
     if (begins_anew_) touch_.begin_anew();
     begins_anew_ = false;
 }
 
-void FeltHand::begin_anew() {
+void SceneTouch::begin_anew() {
     expect_jump();
     begins_anew_ = true;
 }
 
-void FeltHand::tick(double now) {
+void SceneTouch::tick(double now) {
     touch_.tick(now);
     felt_ = touch_.felt();
 }
