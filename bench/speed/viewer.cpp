@@ -111,7 +111,7 @@ Line measure(Viewer& viewer, Gui& gui, const Screen& screen, Doing doing, double
     line.draw *= 1000.0 / pictures;
     line.controls *= 1000.0 / pictures;
     line.pace = (viewer.experiment()->time() - began) / passed;
-    if (const SceneTouch* hand = viewer.feeling()) {
+    if (const FeltHand* hand = viewer.feeling()) {
         line.haptics = 1 / hand->loop().timing().periods.mean();
         line.longest = 1000 * hand->loop().timing().periods.longest();
     }

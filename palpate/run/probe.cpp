@@ -53,8 +53,8 @@ void Probe::begin(double time, const std::vector<Skin>& skins) {
     }
     const vec3 from = origin + position(recipe_.path, time);
     start_ = time;
-    hand_ = std::make_unique<SceneTouch>(driver(recipe_.device).make({.path = std::move(path)}),
-                                         TouchSettings{.radius = recipe_.radius, .feels = feels_}, from);
+    hand_ = std::make_unique<FeltHand>(driver(recipe_.device).make({.path = std::move(path)}),
+                                       TouchSettings{.radius = recipe_.radius, .feels = feels_}, from);
 }
 
 void Probe::expect_jump() {

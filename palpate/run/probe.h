@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/run/scene_touch.h"
+#include "palpate/run/felt_hand.h"
 
 #include <memory>
 #include <vector>
@@ -46,7 +46,7 @@ class Probe {
     ToolRecipe recipe_;
     std::string file_;  // of the scene, for messages
     std::vector<Feel> feels_;
-    std::unique_ptr<SceneTouch> hand_;
+    std::unique_ptr<FeltHand> hand_;
     double start_ = 0;  // s
     long ticks_ = 0;
     double force_ = 0;

@@ -104,7 +104,7 @@ void show_readings(const Viewer& viewer) {
         ImGui::TextColored(quiet, "energy: on the GPU");
     ImGui::Text("largest speed %.3g m/s", readings.largest_speed);
     ImGui::Text("state %.1f MB", double(readings.memory) / 1e6);
-    if (const SceneTouch* hand = viewer.feeling()) {
+    if (const FeltHand* hand = viewer.feeling()) {
         const LoopTiming& timing = hand->loop().timing();
         const double mean = timing.periods.mean();
         ImGui::Text("haptics %.1f Hz of %.0f", mean > 0 ? 1 / mean : 0, hand->loop().rate());

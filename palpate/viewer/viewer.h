@@ -89,7 +89,7 @@ class Viewer {
     std::vector<Hold> holds() const { return holds_.all(); }
     bool is_holding() const { return holds_.has_own() || feeling_.is_denting(); }
     bool touched() const { return touched_; }  // whether the user has interacted yet
-    const SceneTouch* feeling() const { return feeling_.hand(); }
+    const FeltHand* feeling() const { return feeling_.hand(); }
     const Readings& readings() const { return readings_; }
 
  private:

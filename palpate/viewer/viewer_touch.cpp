@@ -65,7 +65,7 @@ void ViewerTouch::make(const Experiment& experiment, const Sight& sight) {
         // So that it begins there instead of moving there.
         start = follow_pointer(experiment, kind_.tip, sight);
     }
-    auto hand = std::make_unique<SceneTouch>(
+    auto hand = std::make_unique<FeltHand>(
         std::move(device), TouchSettings{.radius = kind_.tip, .feels = kind_.feels}, start, warmth_);
     hand->feel(experiment.play().skins(), now(), beyond);
     hand->go_live();

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/run/scene_touch.h"
+#include "palpate/run/felt_hand.h"
 #include "palpate/touch/drivers.h"
 #include "palpate/viewer/hold.h"
 #include "palpate/viewer/message.h"
@@ -16,7 +16,7 @@ class ViewerTouch {
  public:
     explicit ViewerTouch(Message& message) : message_(message) {}
 
-    const SceneTouch* hand() const { return hand_.get(); }
+    const FeltHand* hand() const { return hand_.get(); }
 
     /// To be called once a picture: makes the touch that the options select, follows the pointer, and feels
     /// the surfaces there. If a device cannot be opened, a message says so, and the options are reset.
@@ -69,7 +69,7 @@ class ViewerTouch {
     const Stroke* last_dent(const Experiment* experiment) const;
 
     Message& message_;
-    std::unique_ptr<SceneTouch> hand_;
+    std::unique_ptr<FeltHand> hand_;
     Kind kind_;
     Warmth warmth_;  // of the motors of the last touch
     std::vector<Stroke> strokes_;

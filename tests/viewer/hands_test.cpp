@@ -275,7 +275,7 @@ TEST_F(ViewerTest, ASliderLeavesTheHandsDeviceOpen) {
     viewer.options.mode = Mode::dent;
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
-    const SceneTouch* hand = viewer.feeling();
+    const FeltHand* hand = viewer.feeling();
     const LoopTiming* timing = &hand->loop().timing();
     for (int i = 1; i <= 3; ++i) {
         viewer.change({"body.1.touch.width=0.00" + std::to_string(i)}, i > 1);

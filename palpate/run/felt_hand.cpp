@@ -1,4 +1,4 @@
-#include "palpate/run/scene_touch.h"
+#include "palpate/run/felt_hand.h"
 
 #include <algorithm>
 
@@ -18,11 +18,10 @@ std::vector<vec3> velocities(const std::vector<vec3>& from, const std::vector<ve
 
 }  // namespace
 
-SceneTouch::SceneTouch(std::unique_ptr<Device> device, TouchSettings settings, vec3 start,
-                       const Warmth& warmth)
+FeltHand::FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth)
     : touch_(std::move(device), std::move(settings), warmth), start_(start) {}
 
-void SceneTouch::feel(const std::vector<Skin>& skins, double time, float reach) {
+void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach) {
     felt_ = touch_.felt();
     before_.resize(skins.size());
     std::vector<std::vector<vec3>> speeds;
@@ -41,12 +40,12 @@ void SceneTouch::feel(const std::vector<Skin>& skins, double time, float reach) 
     begins_anew_ = false;
 }
 
-void SceneTouch::begin_anew() {
+void FeltHand::begin_anew() {
     expect_jump();
     begins_anew_ = true;
 }
 
-void SceneTouch::tick(double now) {
+void FeltHand::tick(double now) {
     touch_.tick(now);
     felt_ = touch_.felt();
 }

@@ -11,11 +11,11 @@ namespace palpate {
 
 /// A Touch on the skins of a play. It is ticked in real time by a servo loop of its own (go_live()), or by
 /// its owner on another clock (tick()), as for films.
-class SceneTouch {
+class FeltHand {
  public:
     /// `start`: about where the device is at first, m. Throws Error if the device cannot be opened. `warmth`:
     /// of motors that were used before.
-    SceneTouch(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth = {});
+    FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth = {});
 
     /// Sets what it can touch from `time` on: the skins within `reach` of it, as they lie then, with
     /// velocities from the last call on. `reach`: m, more than it moves until the next call.
