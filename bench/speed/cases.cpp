@@ -52,7 +52,7 @@ Body whole_box(int nodes) {
 
 // The surface carried by nodes that do not move: that costs as much.
 Case carrying(std::string name, const Mesh& surface, const Body& body, Mapping mapping, int threads,
-              double bytes) {
+              double bytes, bool normals = true) {
     struct Carried {
         Embedding skin;
         std::vector<vec3> nodes, normals, positions, turned;
@@ -67,9 +67,13 @@ Case carrying(std::string name, const Mesh& surface, const Body& body, Mapping m
     return {std::move(name),
             [=] {
                 const double start = palpate::now();
+                Team* const team = threads > 1 ? &all->team : nullptr;
+                const Nodes nodes{all->nodes, all->normals};
                 for (int i = 0; i < 10; ++i)
-                    deform(all->skin, {all->nodes, all->normals}, all->positions, all->turned, nullptr,
-                           threads > 1 ? &all->team : nullptr);
+                    if (normals)
+                        deform(all->skin, nodes, all->positions, all->turned, nullptr, team);
+                    else
+                        deform(all->skin, nodes, all->positions, team);
                 return Work{palpate::now() - start, 10 * vertices};
             },
             0,
@@ -149,6 +153,8 @@ std::vector<Case> embed_cases() {
             carrying("trilinear" + on, surface, body, Mapping::trilinear, threads, sizeof(InCell) + written));
         cases.push_back(
             carrying("frames" + on, surface, body, Mapping::frames, threads, sizeof(OnFrames) + written));
+        cases.push_back(carrying("trilinear, positions alone" + on, surface, body, Mapping::trilinear,
+                                 threads, sizeof(InCell) + sizeof(vec3), false));
         cases.push_back(carrying("interpolated" + on, surface, body, Mapping::interpolated, threads,
                                  sizeof(OnTriangle) + written));
         cases.push_back(carrying("constant" + on, surface, body, Mapping::constant, threads,

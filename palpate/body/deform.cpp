@@ -25,8 +25,8 @@ struct MappingWork {
     const Embedding& embedding;
     const vec4 *positions, *normals;  // of nodes, padded to four floats
     const mat4* frames;               // the deformation gradient at each, and the position of its node
-    vec3 *to_positions, *to_normals;
-    vec4* to_tangents;  // null: not wanted
+    vec3 *to_positions, *to_normals;  // normals: null where they are not asked for
+    vec4* to_tangents;                // null: not wanted
 };
 
 }  // namespace palpate
@@ -78,7 +78,7 @@ class Lanewise : Text {
             corner[k] = each(work_.positions, [k](const InCell& v) HWY_ATTR { return v.nodes[k]; });
         const Pack3 at = each(&InCell::at), n = each(&InCell::normal);
         const MappedVertex f = in_cell(corner, at.x, at.y, at.z);
-        put(f, normal_by_cofactors(f, n.x, n.y, n.z, n));
+        put(f, [&]() HWY_ATTR { return normal_by_cofactors(f, n.x, n.y, n.z, n); });
     }
 
     FN void map_on_triangles() {
@@ -101,7 +101,7 @@ class Lanewise : Text {
         const Pack3 offset = each(&OnTriangle::offset), n = each(&OnTriangle::normal);
         f.position =
             w[0] * node[0] + (w[1] * node[1] + w[2] * node[2]) + expand(f, offset.x, offset.y, offset.z);
-        put(f, direction(expand(f, n.x, n.y, n.z), f.y));
+        put(f, [&]() HWY_ATTR { return direction(expand(f, n.x, n.y, n.z), f.y); });
     }
 
     FN void map_on_frames() {
@@ -121,11 +121,14 @@ class Lanewise : Text {
             f.y += w[k] * y;
             f.z += w[k] * z;
         }
-        put(f, normal_by_cofactors(f, n.x, n.y, n.z, n));
+        put(f, [&]() HWY_ATTR { return normal_by_cofactors(f, n.x, n.y, n.z, n); });
     }
 
-    FN void put(const MappedVertex& f, Pack3 normal) {
+    template <class Normal>
+    FN void put(const MappedVertex& f, Normal find_normal) {
         write(f.position, work_.to_positions);
+        if (!work_.to_normals) return;
+        const Pack3 normal = find_normal();
         write(normal, work_.to_normals);
         if (!work_.to_tangents) return;
         const vec4* rest = work_.embedding.tangents.data();
@@ -227,10 +230,9 @@ void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size
     }
 }
 
-}  // namespace
-
-void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
-            std::vector<vec3>& normals, std::vector<vec4>* tangents, Team* team) {
+// Into what is not null.
+void map_all(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
+             std::vector<vec3>* normals, std::vector<vec4>* tangents, Team* team) {
     if (nodes.positions.size() < embedding.nodes)
         throw Error(
             fmt::format("{} nodes instead of the {} of the body", nodes.positions.size(), embedding.nodes),
@@ -240,7 +242,7 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
                     "the surface that is deformed", "hand in Solver::nodes(), or approximate_normals()");
     const std::size_t vertices = count(embedding);
     positions.resize(vertices);
-    normals.resize(vertices);
+    if (normals) normals->resize(vertices);
     if (tangents) tangents->resize(embedding.tangents.size());
     const auto* framed = std::get_if<Framed>(&embedding.vertices);
     const bool on_triangles = std::holds_alternative<std::vector<OnTriangle>>(embedding.vertices);
@@ -253,7 +255,7 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
                            facing.data(),
                            frames.data(),
                            positions.data(),
-                           normals.data(),
+                           normals ? normals->data() : nullptr,
                            with_tangents ? tangents->data() : nullptr};
     const std::size_t members = std::size_t(team ? team->members() : 1);
     auto share = [&](int member) {
@@ -269,6 +271,17 @@ void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& p
         team->run(share);
     else
         share(0);
+}
+
+}  // namespace
+
+void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
+            std::vector<vec3>& normals, std::vector<vec4>* tangents, Team* team) {
+    map_all(embedding, nodes, positions, &normals, tangents, team);
+}
+
+void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions, Team* team) {
+    map_all(embedding, nodes, positions, nullptr, nullptr, team);
 }
 
 }  // namespace palpate

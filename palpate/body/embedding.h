@@ -114,6 +114,10 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping = Mapping
 void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
             std::vector<vec3>& normals, std::vector<vec4>* tangents = nullptr, Team* team = nullptr);
 
+/// The positions alone, the same to the bit: for collisions and measurements, which need no normals.
+void deform(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
+            Team* team = nullptr);
+
 /// The approximate normal of every node (2005, eq. 3): the sum of the unit vectors from its neighbours, each
 /// weighted by its link's share. Not normalised; short, and unreliable, where neighbours surround the node
 /// evenly. In a sheet it is the unit normal of the fan of springs around the node.

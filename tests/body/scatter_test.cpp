@@ -118,6 +118,19 @@ TEST(Scatter, ASpringIsAsStiffOnTheNodes) {
     }
 }
 
+// As whoever pushes on a surface wants them.
+TEST(Scatter, PositionsAloneAreThoseWithNormals) {
+    for (const auto& [name, body, skin, vertices] : hung_surfaces()) {
+        SCOPED_TRACE(name);
+        const std::vector<vec3> at = deformed(body, 7), normals = approximate_normals(body, at);
+        std::vector<vec3> places, unused, alone;
+        deform(skin, {at, normals}, places, unused);
+        deform(skin, {at, normals}, alone);
+        EXPECT_EQ(alone.size(), vertices);
+        EXPECT_TRUE(alone == places);
+    }
+}
+
 TEST(Scatter, RefusesWhatThereIsNot) {
     const Hung organ = hung_surfaces()[0];
     const SurfacePush beyond{.vertex = organ.vertices}, fine{};
