@@ -6,7 +6,7 @@
 namespace palpate {
 
 /// How strong the springs are at the rim of a body, where some of the cells around them are empty
-/// (architecture.md, "The lattice is a solid").
+/// (docs/why-physics.md, "The lattice is a solid").
 enum class Links {
     automatic,  // cells where a Young's modulus is given, equal where a stiffness is
     cells,      // each spring weighs by how many of the cells around it are filled: the bulk's modulus at any
