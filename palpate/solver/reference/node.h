@@ -38,7 +38,8 @@ struct NodeStates {
 };
 
 /// A node with its backend's eyes: how it sees its neighbours. The physics is node.inl's.
-template <class Number>
+/// `with_hinges`: whether any may have some; what a compiler knows to be none costs nothing.
+template <class Number, bool with_hinges = true>
 struct SeeingNode {
     using Real = Number;
     using Real3 = glm::vec<3, Real>;
@@ -95,7 +96,7 @@ struct SeeingNode {
 #define ASIDE
 #define UNROLL
 #define LINKS world.springs.width
-#define HINGES int(hinges.size())
+#define HINGES (with_hinges ? int(hinges.size()) : 0)
 #include "palpate/solver/node.inl"
 #include "palpate/solver/obstacles.inl"
 #undef HINGES
@@ -106,23 +107,24 @@ struct SeeingNode {
 };
 
 /// Node `i` among the others at `now`.
-template <class Real>
-SeeingNode<Real> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now, std::size_t i,
-                     std::span<const RoundTip> tips = {}) {
+template <class Real, bool with_hinges = true>
+SeeingNode<Real, with_hinges> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now,
+                                  std::size_t i, std::span<const RoundTip> tips = {}) {
     return {all,
             pass,
             now,
             int(i),
             all.springs.ties.data() + i * std::size_t(all.springs.width),
-            all.hinges[i],
+            with_hinges ? std::span(all.hinges[i]) : std::span<const OwnHinge>(),
             Real(all.body.area[i]),
             Real(all.body.cover[i]),
             tips};
 }
 
 /// Node `i` as it is in `from`.
-template <class Real>
-typename SeeingNode<Real>::Node load(const Surroundings& all, const NodeStates<Real>& from, std::size_t i) {
+template <class Real, bool with_hinges = true>
+typename SeeingNode<Real, with_hinges>::Node load(const Surroundings& all, const NodeStates<Real>& from,
+                                                  std::size_t i) {
     return {from.positions[i], from.velocities[i], Real(all.body.inverse_mass[i])};
 }
 

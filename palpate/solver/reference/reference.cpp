@@ -8,9 +8,9 @@ namespace {
 
 using namespace reference;
 
-template <class Real>
+template <class Real, bool with_hinges>
 class Reference final : public Machine {
-    using At = SeeingNode<Real>;
+    using At = SeeingNode<Real, with_hinges>;
     using Node = typename At::Node;
     using Real3 = typename At::Real3;
 
@@ -138,9 +138,11 @@ class Reference final : public Machine {
     }
 
     At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass, const PassPlan& plan = {}) const {
-        return reference::see(around_, pass, at, i, plan.tips);
+        return reference::see<Real, with_hinges>(around_, pass, at, i, plan.tips);
     }
-    Node load(const NodeStates<Real>& from, std::size_t i) const { return reference::load(around_, from, i); }
+    Node load(const NodeStates<Real>& from, std::size_t i) const {
+        return reference::load<Real, with_hinges>(around_, from, i);
+    }
     static void store(const Node& node, NodeStates<Real>& into, std::size_t i) {
         into.positions[i] = node.position;
         into.velocities[i] = node.velocity;
@@ -164,7 +166,10 @@ class Reference final : public Machine {
 
 template <class Real>
 std::unique_ptr<Machine> make_reference(const Body& body, const Simulation& simulation) {
-    return std::make_unique<Reference<Real>>(body, simulation);
+    const bool has_hinges = std::ranges::any_of(
+        body.terms, [](const Term& term) { return std::holds_alternative<Bending>(term); });
+    if (has_hinges) return std::make_unique<Reference<Real, true>>(body, simulation);
+    return std::make_unique<Reference<Real, false>>(body, simulation);
 }
 
 template std::unique_ptr<Machine> make_reference<float>(const Body&, const Simulation&);
