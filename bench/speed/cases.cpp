@@ -91,6 +91,9 @@ std::vector<Case> lattice_cases() {
         cases.push_back(stepping(name, body, how));
     };
     add("27³, whole links", whole_box(27), with(Backend::cpu));
+    const Body small = lattice(ivec3(10), 0.01f, tissue);
+    add("10³", small, with(Backend::cpu));
+    cases.push_back(stepping("10³, a call for each step", small, with(Backend::cpu), nullptr, 1));
     add("27³, shares", box, with(Backend::cpu));
     add("27³, shares, 2 threads", box, with(Backend::cpu, 2));
     add("64³, shares", large, with(Backend::cpu));

@@ -69,7 +69,8 @@ Timings time(std::vector<Case> cases, int rounds, int limits) {
     return timings;
 }
 
-Case stepping(std::string name, const Body& body, const Simulation& how, const gl::Context* context) {
+Case stepping(std::string name, const Body& body, const Simulation& how, const gl::Context* context,
+              int steps_a_call) {
     Simulation simulation = how;
     simulation.step = 1e-5;
     simulation.force = true;
@@ -78,7 +79,8 @@ Case stepping(std::string name, const Body& body, const Simulation& how, const g
     const double nodes = double(body.count());
     auto go = [=](int steps) {
         const double start = now();
-        solver->step(steps * simulation.step);
+        for (int left = steps; left > 0; left -= steps_a_call)
+            solver->step(std::min(left, steps_a_call) * simulation.step);
         if (context) context->finish();
         return now() - start;
     };

@@ -66,9 +66,10 @@ Timings time(std::vector<Case> cases, int rounds, int limits = -1);
 Work arithmetic(int threads);
 Work copying(int threads);
 
-/// Steps of a body, of 10 µs each, many in a call. In a context if it moves on the GPU, which is waited for.
-Case stepping(std::string name, const Body& body, const Simulation& how,
-              const gl::Context* context = nullptr);
+/// Steps of a body, of 10 µs each, as many in a call as are said. In a context if it moves on the GPU, which
+/// is waited for.
+Case stepping(std::string name, const Body& body, const Simulation& how, const gl::Context* context = nullptr,
+              int steps_a_call = 1 << 30);
 
 /// How often something of so many seconds has to be done for a twentieth of a second.
 int times_for(double seconds);

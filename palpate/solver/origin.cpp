@@ -1,5 +1,7 @@
 #include "palpate/solver/origin.h"
 
+#include "palpate/body/simulation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,6 +19,8 @@ double furthest(const Body& body) {
 // In sizes of a body: how far it may be from what it counts from. Less would save a digit more, and cost
 // bodies that hardly move the promise that a state is restored to the bit.
 constexpr double far = 2;
+// The same for an origin that goes along: to move it costs something at every node.
+constexpr double slack = 1.0 / 64;
 
 double largest(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
@@ -119,10 +123,13 @@ void FloatingOrigin::change(const Body& body) {
     if (body.count() > 0) begin_ = home_ + dvec3(local(body).positions[0]);
 }
 
-Origin FloatingOrigin::beside(dvec3 first_node, dvec3 velocity) const {
+Origin FloatingOrigin::beside(dvec3 first_node, dvec3 velocity, const Origin& now) const {
     const dvec3 way = first_node - begin_;
     if (!(size_ > 0) || !(largest(way) > far * size_)) return first();
-    return {home_ + way, velocity};
+    const Origin best{home_ + way, velocity};
+    const bool serves = largest(best.place - now.place) <= slack * size_ &&
+                        largest(best.velocity - now.velocity) * frame_seconds <= slack * size_;
+    return serves ? now : best;
 }
 
 }  // namespace palpate

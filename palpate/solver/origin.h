@@ -30,8 +30,9 @@ class FloatingOrigin {
     /// The first origin: the world's, unless the body lies farther from it than twice its size.
     Origin first() const { return {home_}; }
     /// The origin of a body whose first node is there in the world, m, at this speed, m/s: the first one,
-    /// until the node has gone farther than twice the body's size; then the origin goes with the node.
-    Origin beside(dvec3 first_node, dvec3 velocity) const;
+    /// until the node has gone farther than twice the body's size; then the origin goes with the node, and
+    /// `now` serves on as long as the node has not gone far from that.
+    Origin beside(dvec3 first_node, dvec3 velocity, const Origin& now) const;
 
  private:
     dvec3 home_ = dvec3(0);      // m, the first origin

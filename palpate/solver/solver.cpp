@@ -116,7 +116,7 @@ Stats Solver::go_on(double seconds, const Influences& influences) {
 
 // The machine counts from where the body is now.
 void Solver::go_along() {
-    const Origin next = floating_.beside(first_node_, first_velocity_);
+    const Origin next = floating_.beside(first_node_, first_velocity_, origin_);
     if (next == origin_) return;
     machine_->shift(next.place - origin_.place, next.velocity - origin_.velocity);
     origin_ = next;
@@ -218,7 +218,7 @@ void Solver::restore(const State& state) {
 
 void Solver::put(State state) {
     if (!state.positions.empty()) first_node_ = state.positions[0], first_velocity_ = state.velocities[0];
-    origin_ = floating_.beside(first_node_, first_velocity_);
+    origin_ = floating_.beside(first_node_, first_velocity_, floating_.first());
     for (dvec3& p : state.positions) p -= origin_.place;
     for (dvec3& v : state.velocities) v -= origin_.velocity;
     machine_->put(state, origin_);

@@ -75,8 +75,9 @@ struct Laid {
     const float *area, *cover;              // m², m
     const vec3* corners;                    // of polygons
     const DistanceField* const* fields;     // of closed meshes
-    float finest;  // m: places at the end of a call are multiples of it, so that a double holds
-                   // them exactly beside the place at rest
+    float whole_within;  // m: nodes that have gone no farther from their places at rest tear no spring
+    float finest;        // m: places at the end of a call are multiples of it, so that a double holds
+                         // them exactly beside the place at rest
 };
 
 /// What pushes nodes: of every slot, zero where nothing does.

@@ -53,6 +53,24 @@ std::vector<vec3> links_at_rest(const Body& body) {
     return links;
 }
 
+// m: where all nodes have come no farther than this from their places at rest, no spring is stretched to
+// where it counts as torn. `along`: a grid's links at rest.
+float whole_within(const Body& body, std::span<const vec3> along) {
+    float least = std::numeric_limits<float>::max();
+    auto look_at = [&](float rest, vec3 way) {
+        least = std::min(least, std::sqrt(torn_at(rest, body)) - glm::length(way));
+    };
+    if (along.empty()) {
+        const Table springs = table(body);
+        for (std::size_t i = 0; i < body.count(); ++i)
+            for (const Tie& tie : springs.of(i))
+                if (tie.to >= 0) look_at(tie.rest, body.positions[std::size_t(tie.to)] - body.positions[i]);
+    } else {
+        for (std::size_t l = 0; l < along.size(); ++l) look_at(body.grid()->links[l].rest, along[l]);
+    }
+    return std::max(0.499f * least, 0.0f);
+}
+
 bool along_axes(const Body& body, const std::vector<vec3>& links) {
     for (std::size_t l = 0; l < links.size(); ++l)
         if (!(glm::distance(links[l], body.spacing * vec3(body.grid()->links[l].offset)) <=
@@ -108,6 +126,7 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
       fields_(distance_fields(simulation)) {
     view_.springs = springs.first;
     view_.spacing = body.spacing;
+    view_.whole_within = whole_within(body, springs.second);
     view_.finest = std::exp2(float(std::ilogb(std::max(furthest(body), 1e-30f)) + 1 - 51));
     std::copy(springs.second.begin(), springs.second.end(), view_.along.begin());
     if (view_.springs == Springs::table) {
