@@ -206,6 +206,11 @@ float area_square(const Body& body, int a, int b, int c) {
 
 }  // namespace
 
+bool has_hinges(const Body& body) {
+    return std::ranges::any_of(body.terms,
+                               [](const Term& term) { return std::holds_alternative<Bending>(term); });
+}
+
 std::vector<std::vector<OwnHinge>> own_hinges(const Body& body) {
     std::vector<std::vector<OwnHinge>> lists(body.count());
     for (const Term& term : body.terms) {

@@ -152,6 +152,8 @@ void check(const Body& body);
 /// The springs of any body as its nodes see them; a grid's links stay in their order, and come first.
 Table table(const Body& body);
 
+bool has_hinges(const Body& body);
+
 /// The hinges of a body as its nodes see them: for each node all that it belongs to.
 std::vector<std::vector<OwnHinge>> own_hinges(const Body& body);
 

@@ -177,17 +177,6 @@ namespace {
 
 HWY_EXPORT(map_vertices);
 
-std::size_t count(const Embedding& embedding) {
-    if (const auto* framed = std::get_if<Framed>(&embedding.vertices)) return framed->vertices.size();
-    if (const auto* in_cells = std::get_if<std::vector<InCell>>(&embedding.vertices)) return in_cells->size();
-    return std::get<std::vector<OnTriangle>>(embedding.vertices).size();
-}
-
-bool needs_normals(const Embedding& embedding) {
-    const auto* vertices = std::get_if<std::vector<OnTriangle>>(&embedding.vertices);
-    return vertices && std::ranges::any_of(*vertices, [](const OnTriangle& v) { return v.curvature > 0; });
-}
-
 std::vector<vec4> with_room(std::span<const vec3> vectors) {
     std::vector<vec4> list;
     list.reserve(vectors.size());
@@ -233,14 +222,8 @@ void find_frames(const Framed& framed, const std::vector<vec4>& nodes, std::size
 // Into what is not null.
 void map_all(const Embedding& embedding, const Nodes& nodes, std::vector<vec3>& positions,
              std::vector<vec3>* normals, std::vector<vec4>* tangents, Team* team) {
-    if (nodes.positions.size() < embedding.nodes)
-        throw Error(
-            fmt::format("{} nodes instead of the {} of the body", nodes.positions.size(), embedding.nodes),
-            "the surface that follows them", "hand in all of them");
-    if (nodes.normals.size() < embedding.nodes && needs_normals(embedding))
-        throw Error("the approximate normals are missing that the mapping needs",
-                    "the surface that is deformed", "hand in Solver::nodes(), or approximate_normals()");
-    const std::size_t vertices = count(embedding);
+    check(nodes, embedding);
+    const std::size_t vertices = vertex_count(embedding);
     positions.resize(vertices);
     if (normals) normals->resize(vertices);
     if (tangents) tangents->resize(embedding.tangents.size());

@@ -163,4 +163,24 @@ std::vector<vec3> approximate_normals(const Body& body, std::span<const vec3> po
     return normals;
 }
 
+std::size_t vertex_count(const Embedding& embedding) {
+    if (const auto* framed = std::get_if<Framed>(&embedding.vertices)) return framed->vertices.size();
+    if (const auto* in_cells = std::get_if<std::vector<InCell>>(&embedding.vertices)) return in_cells->size();
+    return std::get<std::vector<OnTriangle>>(embedding.vertices).size();
+}
+
+void check(const Nodes& nodes, const Embedding& embedding) {
+    const auto* on_triangles = std::get_if<std::vector<OnTriangle>>(&embedding.vertices);
+    const bool needs_normals = on_triangles && std::ranges::any_of(*on_triangles, [](const OnTriangle& v) {
+                                   return v.curvature > 0;
+                               });
+    if (nodes.positions.size() < embedding.nodes)
+        throw Error(
+            fmt::format("{} nodes instead of the {} of the body", nodes.positions.size(), embedding.nodes),
+            "the surface that follows them", "hand in all of them");
+    if (nodes.normals.size() < embedding.nodes && needs_normals)
+        throw Error("the approximate normals are missing that the mapping needs",
+                    "the surface that is deformed", "hand in Solver::nodes(), or approximate_normals()");
+}
+
 }  // namespace palpate

@@ -135,6 +135,12 @@ class Outside {
     BoxGrid box_grid_;
 };
 
+/// How many vertices hang on the body.
+std::size_t vertex_count(const Embedding& embedding);
+
+/// Throws Error where there are fewer nodes, or approximate normals, than the embedding needs.
+void check(const Nodes& nodes, const Embedding& embedding);
+
 // Each mapping's way to embed a surface, which must have normals.
 
 std::vector<InCell> embed_in_cells(const Mesh& surface, const Body& body);

@@ -133,28 +133,15 @@ auto of_vertex(const Embedding& embedding, std::size_t number, Visit visit) {
     return visit(std::get<std::vector<OnTriangle>>(embedding.vertices)[number]);
 }
 
-std::size_t count(const Embedding& embedding) {
-    return std::visit(
-        [](const auto& v) {
-            if constexpr (requires { v.vertices; })
-                return v.vertices.size();
-            else
-                return v.size();
-        },
-        embedding.vertices);
-}
-
 }  // namespace
 
 std::vector<NodePush> scatter(const Embedding& embedding, const Nodes& nodes,
                               std::span<const SurfacePush> pushes) {
-    if (nodes.positions.size() < embedding.nodes)
-        throw Error(fmt::format("{} nodes of a body that has {}", nodes.positions.size(), embedding.nodes),
-                    "the surface that is pushed", "hand in all of them");
+    check(nodes, embedding);
     std::vector<NodePush> all;
     for (const SurfacePush& push : pushes) {
-        if (push.vertex >= count(embedding))
-            throw Error(fmt::format("a push on vertex {} of {}", push.vertex, count(embedding)),
+        if (push.vertex >= vertex_count(embedding))
+            throw Error(fmt::format("a push on vertex {} of {}", push.vertex, vertex_count(embedding)),
                         "the surface that is pushed", "count vertices from 0");
         of_vertex(embedding, push.vertex, [&](const auto& vertex) {
             const std::vector<Share> shares = shares_of(vertex, nodes);

@@ -21,7 +21,7 @@ struct SurfacePush {
 /// have the same sum, the same moment and do the same work. A spring becomes springs on the nodes by how far
 /// each carries the vertex; together they are as stiff, and now draw as the spring does. `nodes`: where they
 /// are now; approximate normals are taken as they are. Throws Error where there are fewer nodes than the body
-/// has, or a push names a vertex that there is not.
+/// has, or no approximate normals for a mapping that needs them, or a push names a vertex that there is not.
 std::vector<NodePush> scatter(const Embedding& embedding, const Nodes& nodes,
                               std::span<const SurfacePush> pushes);
 

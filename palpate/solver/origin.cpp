@@ -9,13 +9,6 @@
 namespace palpate {
 namespace {
 
-double furthest(const Body& body) {
-    float most = 0;
-    for (vec3 p : body.positions)
-        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(p[k]));
-    return most;
-}
-
 // In sizes of a body: how far it may be from what it counts from. Less would save a digit more, and cost
 // bodies that hardly move the promise that a state is restored to the bit.
 constexpr double far = 2;
@@ -64,7 +57,7 @@ struct GridFit {
     // At right angles, `spacing` long and along the world's axes, as far as float lets one tell. `steps`: how
     // wide the grid is.
     void straighten(const Body& body, double steps) {
-        const double hair = lost(furthest(body)) / (4 * steps);
+        const double hair = lost(largest_coordinate(body)) / (4 * steps);
         const dmat3 measured = axes;
         auto take = [&](dmat3 better) {
             for (int k = 0; k < 3; ++k)
@@ -86,7 +79,7 @@ std::vector<dvec3> exact_places(const Body& body) {
     std::vector<dvec3> places(body.positions.begin(), body.positions.end());
     if (!body.grid() || body.count() == 0) return places;
     const GridFit fit(body);
-    const double hair = lost(furthest(body));
+    const double hair = lost(largest_coordinate(body));
     for (std::size_t i = 0; i < body.count(); ++i)
         if (!(largest(fit.at(body.at[i]) - places[i]) <= hair)) return places;
     for (std::size_t i = 0; i < body.count(); ++i) places[i] = fit.at(body.at[i]);
@@ -95,6 +88,7 @@ std::vector<dvec3> exact_places(const Body& body) {
 
 Body counted_from(dvec3 origin, const Body& body) {
     Body local = body;
+    const double hair = lost(largest_coordinate(body));
     const std::vector<dvec3> places = exact_places(body);
     for (std::size_t i = 0; i < places.size(); ++i) local.positions[i] = vec3(places[i] - origin);
     for (Term& term : local.terms)
@@ -102,12 +96,19 @@ Body counted_from(dvec3 origin, const Body& body) {
             for (Spring& spring : listed->springs) {
                 const auto a = std::size_t(spring.a), b = std::size_t(spring.b);
                 const float apart = glm::distance(local.positions[a], local.positions[b]);
-                if (std::abs(apart - spring.rest) <= lost(furthest(body))) spring.rest = apart;
+                if (std::abs(apart - spring.rest) <= hair) spring.rest = apart;
             }
     return local;
 }
 
 }  // namespace
+
+float largest_coordinate(const Body& body) {
+    float most = 0;
+    for (vec3 p : body.positions)
+        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(p[k]));
+    return most;
+}
 
 FloatingOrigin::FloatingOrigin(const Body& body) {
     const Bounds box = bounds(body.positions);

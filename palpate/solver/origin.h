@@ -14,6 +14,9 @@ struct Origin {
     bool operator==(const Origin&) const = default;
 };
 
+/// m, of any node at rest along any axis, without its sign.
+float largest_coordinate(const Body& body);
+
 /// The origin of one body, which goes along with it. A float has seven digits: counted from the world's
 /// origin, a body that lies far out or falls fast spends them on the way there and on the speed that all its
 /// nodes have alike; its springs feel what is lost, and shake it.

@@ -140,6 +140,9 @@ TEST(Scatter, RefusesWhatThereIsNot) {
               }).find("vertex"),
               std::string::npos);
     EXPECT_NE(refusal([&] { scatter(organ.skin, {}, {&fine, 1}); }), "");
+    for (const Hung& one : hung_surfaces())
+        if (one.name.find("interpolated") != one.name.npos)
+            EXPECT_NE(refusal([&] { scatter(one.skin, {one.body.positions, {}}, {&fine, 1}); }), "");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
 #include "palpate/solver/solver.h"
-#include "tests/gl/with_context.h"
+#include "tests/solver/every_backend.h"
 
 #include <gtest/gtest.h>
 
@@ -23,20 +23,8 @@ const Material tissue{.youngs_modulus = 2000, .density = 1000, .damping = 40};
 constexpr float none = std::numeric_limits<float>::quiet_NaN(),
                 endless = std::numeric_limits<float>::infinity();
 
-class Refuses : public WithContext, public ::testing::WithParamInterface<Backend> {
- protected:
-    void SetUp() override {
-        if (on_gpu(GetParam())) WithContext::SetUp();
-    }
-    std::unique_ptr<Solver> make(const Body& body, Simulation simulation) const {
-        simulation.backend = GetParam();
-        return make_solver(body, simulation, context_ ? context() : nullptr);
-    }
-};
-INSTANTIATE_TEST_SUITE_P(Backends, Refuses,
-                         ::testing::Values(Backend::reference, Backend::cpu, Backend::feedback,
-                                           Backend::fragment, Backend::compute),
-                         [](const auto& of) { return std::string(name_of(of.param)); });
+class Refuses : public EveryBackend {};
+INSTANTIATE_TEST_SUITE_P(Backends, Refuses, every_backend(), backend_name);
 
 TEST_P(Refuses, WhatCannotActOnABodyOrBePutBack) {
     Body body = lattice({4, 3, 5}, 0.01f, tissue);

@@ -2,7 +2,9 @@
 #include "palpate/solver/cpu/layout.h"
 #include "palpate/solver/schedule.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -55,6 +57,12 @@ struct Hinges {
     const Slice* slices;
     const std::uint32_t* records;
 };
+
+/// m: so far both ends of a spring may come from their places at rest, and it is not torn yet, which it is at
+/// a length whose square is `torn_at`, m². `way`: from end to end at rest.
+inline float whole_within(float torn_at, vec3 way) {
+    return std::max(0.499f * (std::sqrt(torn_at) - glm::length(way)), 0.0f);
+}
 
 /// A body as it lies in memory: all that stays the same.
 struct Laid {

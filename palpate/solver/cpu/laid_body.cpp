@@ -22,19 +22,13 @@ bool whole(const GridSprings& stencil) {
     return true;
 }
 
-float furthest(const Body& body) {
-    float most = 0;
-    for (vec3 p : body.positions)
-        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(p[k]));
-    return most;
-}
-
 // Each link at rest, if all nodes that have it agree on it; else nothing.
 std::vector<vec3> links_at_rest(const Body& body) {
     const GridSprings& stencil = *body.grid();
     const GridIndex number(body.at);
     // Positions that were turned and moved are rounded more than once.
-    const float hair = 1e-5f * body.spacing + 10 * std::numeric_limits<float>::epsilon() * furthest(body);
+    const float hair =
+        1e-5f * body.spacing + 10 * std::numeric_limits<float>::epsilon() * largest_coordinate(body);
     std::vector<vec3> links;
     for (std::size_t l = 0; l < stencil.links.size(); ++l) {
         dvec3 sum(0);
@@ -51,24 +45,6 @@ std::vector<vec3> links_at_rest(const Body& body) {
         links.push_back(mean);
     }
     return links;
-}
-
-// m: where all nodes have come no farther than this from their places at rest, no spring is stretched to
-// where it counts as torn. `along`: a grid's links at rest.
-float whole_within(const Body& body, std::span<const vec3> along) {
-    float least = std::numeric_limits<float>::max();
-    auto look_at = [&](float rest, vec3 way) {
-        least = std::min(least, std::sqrt(torn_at(rest, body)) - glm::length(way));
-    };
-    if (along.empty()) {
-        const Table springs = table(body);
-        for (std::size_t i = 0; i < body.count(); ++i)
-            for (const Tie& tie : springs.of(i))
-                if (tie.to >= 0) look_at(tie.rest, body.positions[std::size_t(tie.to)] - body.positions[i]);
-    } else {
-        for (std::size_t l = 0; l < along.size(); ++l) look_at(body.grid()->links[l].rest, along[l]);
-    }
-    return std::max(0.499f * least, 0.0f);
 }
 
 bool along_axes(const Body& body, const std::vector<vec3>& links) {
@@ -98,11 +74,6 @@ std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
     return {springs, std::move(links)};
 }
 
-bool has_hinges(const Body& body) {
-    return std::ranges::any_of(body.terms,
-                               [](const Term& term) { return std::holds_alternative<Bending>(term); });
-}
-
 bool in_quarters(Springs springs) {
     return springs == Springs::lattice || springs == Springs::lattice_with_strength ||
            springs == Springs::turned_lattice;
@@ -126,13 +97,13 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
       fields_(distance_fields(simulation)) {
     view_.springs = springs.first;
     view_.spacing = body.spacing;
-    view_.whole_within = whole_within(body, springs.second);
-    view_.finest = std::exp2(float(std::ilogb(std::max(furthest(body), 1e-30f)) + 1 - 51));
+    view_.finest = std::exp2(float(std::ilogb(std::max(largest_coordinate(body), 1e-30f)) + 1 - 51));
     std::copy(springs.second.begin(), springs.second.end(), view_.along.begin());
     if (view_.springs == Springs::table) {
         ties_.emplace(body, layout_, lanes);
         bytes_ += ties_->bytes();
         view_.ties = ties_->view();
+        view_.whole_within = ties_->whole_within();
         if (has_hinges(body)) {
             hinges_.emplace(body, layout_, lanes);
             bytes_ += hinges_->bytes();
@@ -167,6 +138,10 @@ void LaidBody::lay_grid(const Body& body) {
         view_.words[w] = words_.back().data();
     }
     for (std::size_t i = 0; i < body.count(); ++i) lay_shares(body, i);
+    view_.whole_within = std::numeric_limits<float>::max();
+    for (std::size_t l = 0; l < stencil.links.size(); ++l)
+        view_.whole_within =
+            std::min(view_.whole_within, whole_within(torn_at(stencil.links[l].rest, body), view_.along[l]));
     std::vector<float> half(body.count(), 0.5f);
     for (std::size_t i = 0; i < stencil.strength.size(); ++i) half[i] *= stencil.strength[i];
     const bool varies = view_.springs == Springs::lattice_with_strength ||

@@ -151,6 +151,7 @@ void LaidTies::write(std::size_t at, const Tie& tie, const Body& body, std::size
     const float pulls[] = {way.x, way.y, way.z, tie.share * tie.stiffness,
                            tie.share * (tie.stiffness * tie.rest)};
     const float asked[] = {tie.share, tie.stiffness, torn_at(tie.rest, body)};
+    whole_within_ = std::min(whole_within_, cpu::whole_within(asked[2], way));
     auto* const numbers = reinterpret_cast<float*>(pulling_.data()) + record * pulling;
     for (std::size_t k = 0; k < std::size(pulls); ++k) numbers[(k + 1) * lanes_ + lane] = pulls[k];
     for (std::size_t k = 0; k < std::size(asked); ++k)

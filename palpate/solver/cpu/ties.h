@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/solver/cpu/kernel.h"
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ class LaidTies {
     LaidTies(const Body& body, const Layout& layout, int lanes);
 
     Ties view() const { return {slices_.data(), pulling_.data(), whole_.data()}; }
+    /// m, of all springs the least (whole_within() in kernel.h).
+    float whole_within() const { return whole_within_; }
     std::size_t bytes() const { return pulling_.bytes() + whole_.bytes() + slices_.size() * sizeof(Slice); }
 
  private:
@@ -36,6 +39,7 @@ class LaidTies {
     void write(std::size_t at, const Tie& tie, const Body& body, std::size_t node);
 
     std::size_t lanes_;
+    float whole_within_ = std::numeric_limits<float>::max();
     std::vector<Slice> slices_;
     Array<std::byte> pulling_;
     Array<float> whole_;

@@ -166,9 +166,7 @@ class Reference final : public Machine {
 
 template <class Real>
 std::unique_ptr<Machine> make_reference(const Body& body, const Simulation& simulation) {
-    const bool has_hinges = std::ranges::any_of(
-        body.terms, [](const Term& term) { return std::holds_alternative<Bending>(term); });
-    if (has_hinges) return std::make_unique<Reference<Real, true>>(body, simulation);
+    if (has_hinges(body)) return std::make_unique<Reference<Real, true>>(body, simulation);
     return std::make_unique<Reference<Real, false>>(body, simulation);
 }
 
