@@ -30,7 +30,7 @@ class Unfinished {
     bool finished_ = false;
 };
 
-/// Removes every file that is still unfinished. For when the process is told to stop: a signal handler may
+/// Removes every file that is still unfinished. For when the process is asked to stop: a signal handler may
 /// call it.
 void remove_unfinished() noexcept;
 

@@ -39,9 +39,9 @@ void wait_a_moment() { poll(nullptr, 0, 1); }
 // crashed does not call them again.
 void call_acts(Halt halt) {
     if (getpid() != process) return;
-    pid_t nobody = 0;
-    if (!acting.compare_exchange_strong(nobody, this_thread())) {
-        if (nobody == this_thread()) return;
+    pid_t expected = 0;
+    if (!acting.compare_exchange_strong(expected, this_thread())) {
+        if (expected == this_thread()) return;
         for (int ms = 0; ms < 1000 && acting != 0; ++ms) wait_a_moment();
         return;
     }

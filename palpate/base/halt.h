@@ -5,7 +5,7 @@ namespace palpate {
 /// How a process comes to a halt.
 enum class Halt {
     paused,  // it is stopped from its terminal (Ctrl+Z) and may continue later
-    ended,   // it is told to end, crashes, or calls exit()
+    ended,   // it is asked to end, crashes, or calls exit()
 };
 
 /// From now on `act` is called before the process halts: at a signal that would end it (SIGINT, SIGTERM,

@@ -146,7 +146,7 @@ struct OwnHinge {
 std::string name_in_errors(const Body& body);
 
 /// Throws Error where its lists are not as long as one another, name nodes that it does not have, or hold
-/// what is not finite. Whatever makes a solver or hangs a surface on a body asks this first.
+/// what is not finite. Everything that makes a solver or embeds a surface calls this first.
 void check(const Body& body);
 
 /// The springs of any body as its nodes see them; a grid's links stay in their order, and come first.

@@ -37,7 +37,7 @@ BodyChange apply(Body& body, const Edit& edit);
 
 /// Hangs a surface again after a change of its body. A vertex whose cell is gone goes to the nearest one that
 /// is left, and keeps its place at rest. False, and it is as it was, where a vertex hung on nodes that are
-/// gone by other mappings than trilinear: embed() hangs it anew.
+/// gone by other mappings than trilinear: call embed() again for those.
 bool rehang(Embedding& embedding, const Body& body, const BodyChange& change);
 
 }  // namespace palpate

@@ -47,7 +47,7 @@ class Play {
     void restore(const std::vector<State>& states);
 
     /// Takes over what the tools of another play touch and hold, for a scene with the same tools, nodes and
-    /// vertices. Not the probes, which begin anew.
+    /// vertices. Not the probes, which start over.
     void take_tools(const Play& from);
     /// Takes over the probes, which the other play loses.
     void take_probes(Play& from);

@@ -70,7 +70,7 @@ Interaction to_hands(const json& one) {
                                {pull.at("node").get<int>(), to_vector(pull.at("to")),
                                 to_vector(pull.at("velocity")), finite(pull.at("stiffness"))}});
     for (const Press& press : hands.presses)
-        if (!(press.radius > 0) || !(press.stiffness >= 0)) throw std::string("a press that is none");
+        if (!(press.radius > 0) || !(press.stiffness >= 0)) throw std::string("an invalid press");
     return hands;
 }
 
@@ -93,7 +93,7 @@ Recording to_recording(const json& all) {
     recording.changes = all.at("changes").get<std::vector<Change>>();
     recording.frames = all.at("frames").get<long>();
     if (recording.frames < 0 || recording.frames > most_frames)
-        throw std::string("a number of frames that is none");
+        throw std::string("an invalid number of frames");
     recording.fingerprint = all.at("fingerprint");
     for (const json& one : all.at("inputs")) {
         recording.inputs.push_back(to_input(one));

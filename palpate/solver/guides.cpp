@@ -17,7 +17,7 @@ void Guides::stand(const State& state) {
     for (std::size_t g = 0; g < guides_.size(); ++g) at_[g] = state.positions[std::size_t(guides_[g].node)];
 }
 
-void Guides::tell(State& state) const {
+void Guides::write_to(State& state) const {
     for (std::size_t g = 0; g < guides_.size(); ++g) state.positions[std::size_t(guides_[g].node)] = at_[g];
 }
 

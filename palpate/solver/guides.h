@@ -15,7 +15,7 @@ struct Guide {
     bool is_led = false;        // unless it does not move
 };
 
-/// The guides of all nodes of inverse mass 0, in their order. It remembers where they stand, so that nobody
+/// The guides of all nodes of inverse mass 0, in their order. It remembers where they stand, so that nothing
 /// has to ask the machine.
 class Guides {
  public:
@@ -25,7 +25,7 @@ class Guides {
     /// The nodes are there now.
     void stand(const State& state);
     /// Where they are, exactly: a machine may have had to round it.
-    void tell(State& state) const;
+    void write_to(State& state) const;
 
     /// Leads them through a call of `seconds` towards where the moves say.
     std::span<const Guide> lead(const Influences& influences, double seconds);

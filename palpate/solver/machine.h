@@ -30,8 +30,8 @@ class Machine {
  public:
     virtual ~Machine() = default;
 
-    /// These nodes' springs, masses or outsides are others now, which the body says; the state is put next.
-    /// False, and nothing has changed, where it cannot lay them where they lie.
+    /// The body's springs, masses or outside have changed at these nodes; the state is put next. False, and
+    /// nothing has changed, where its memory cannot be updated in place.
     virtual bool change(std::span<const int> nodes) {
         static_cast<void>(nodes);
         return false;
@@ -64,7 +64,7 @@ class Machine {
     virtual std::size_t memory() const = 0;
 };
 
-// The machines, a folder each. Body and simulation were checked, and are kept by whoever asks.
+// The machines, a folder each. Body and simulation were checked, and must outlive the machine.
 
 /// One node after the other. Real is float, which other machines must match, or double, which shows orders of
 /// convergence without rounding in the way.

@@ -41,7 +41,7 @@ FN Contact at_triangle(Real3 was, Real3 p, Real3 a, Real3 b, Real3 c) {
     Real3 at = was + part * (p - was);
     Real left_of_ab = dot(cross(b - a, at - a), normal), left_of_bc = dot(cross(c - b, at - b), normal);
     Real within = min(min(left_of_ab, left_of_bc), dot(cross(a - c, at - c), normal));
-    // Triangles overlap by a hair, so that rounding leaves no seam between them.
+    // Triangles overlap a little, so that rounding leaves no seam between them.
     Real hair = Real(-1e-4f) * dot(cross(b - a, c - a), normal);
     Contact contact;
     contact.normal = side * normal;

@@ -9,7 +9,7 @@
 namespace palpate {
 
 /// The states of a body that a machine keeps. A step begins at `current`. Its passes write between and
-/// further by turns; the last of several writes over `current`, whose neighbours nobody looks at any more.
+/// further alternately; the last of several writes over `current`, whose neighbours are no longer read.
 /// The only one of a step writes between, and the two buffers are swapped.
 enum StateBuffer { current, between, further, sum };
 

@@ -70,7 +70,7 @@ struct LocalActs {
 }  // namespace
 
 int steps_within(double seconds, double longest) {
-    const double steps = std::ceil(seconds / longest - 1e-6);  // a hair of rounding is not worth a step
+    const double steps = std::ceil(seconds / longest - 1e-6);  // rounding alone is not worth a step
     if (!(steps <= 1e9))
         throw Error(fmt::format("{:.3g} steps of {:.3g} s for {:.3g} s", steps, longest, seconds),
                     "a call of step()", "step by less at once");
@@ -196,7 +196,7 @@ State Solver::save() const {
     State state = machine_->get();
     for (dvec3& p : state.positions) p += origin_.place;
     for (dvec3& v : state.velocities) v += origin_.velocity;
-    guides_.tell(state);
+    guides_.write_to(state);
     state.lag = lag_;
     return state;
 }

@@ -93,8 +93,8 @@ class Solver final {
     void restore(const State& state);
 
     /// Cuts springs and cells out of the body while it moves (body/edit.h). The state of all nodes that are
-    /// left stays to the bit, and memory is laid anew only for what changed, as far as the machine can. What
-    /// was before cannot be put back by undo(). Throws Error, and nothing has changed, as apply() does.
+    /// left stays to the bit, and memory is rewritten only for what changed, where the machine can do so.
+    /// What was before cannot be put back by undo(). Throws Error, and nothing has changed, as apply() does.
     BodyChange change(const Edit& edit);
 
     const Body& body() const { return body_; }

@@ -28,8 +28,8 @@ const char* bindings_inl =
 const char* prelude_glsl =
 #include "embedded/prelude.glsl.h"
     ;
-const char* eyes_glsl =
-#include "embedded/eyes.glsl.h"
+const char* node_access_glsl =
+#include "embedded/node_access.glsl.h"
     ;
 const char* pass_node_glsl =
 #include "embedded/pass_node.glsl.h"
@@ -40,7 +40,7 @@ gl::Field field(GLenum format, const std::vector<Value>& values) {
     return gl::Field(format, sizeof(Value), values.size(), 0, std::as_bytes(std::span(values)));
 }
 
-// In a field that is made anew where there is no room.
+// In a field that is replaced by a larger one where there is no room.
 void put(std::optional<gl::Field>& to, const std::vector<vec4>& values) {
     const std::size_t bytes = values.size() * sizeof(vec4);
     if (!to || to->bytes() < bytes)
@@ -200,7 +200,7 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
         made.tiles = cut.groups;
     }
     for (const char* part :
-         {bindings_inl, prelude_glsl, pass_inl, eyes_glsl, node_inl, obstacles_inl, pass_node_glsl})
+         {bindings_inl, prelude_glsl, pass_inl, node_access_glsl, node_inl, obstacles_inl, pass_node_glsl})
         text += part;
     made.physics = std::move(text);
     return made;

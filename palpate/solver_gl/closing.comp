@@ -1,4 +1,4 @@
-// closing.comp: what there is to know of the nodes after a call: where they are, for whoever draws them, and what the host
+// closing.comp: the results of a call: where the nodes are, for drawing, and what the host
 // asks. Each invocation takes every so manieth node, so that few of them meet at the atomics.
 
 layout(local_size_x = group_size) in;

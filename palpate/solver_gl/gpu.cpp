@@ -323,7 +323,7 @@ class Gpu final : public Machine {
 
 std::unique_ptr<Machine> make_gpu(const Body& body, const Simulation& simulation, const gl::Context* context,
                                   std::optional<bool> tiles) {
-    std::optional<gl::Visit> visit;  // in a context of its own nobody else is
+    std::optional<gl::Visit> visit;  // a context of its own needs none
     if (context) {
         context->make_current();
         visit.emplace();

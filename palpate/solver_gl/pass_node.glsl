@@ -2,7 +2,7 @@
 
 // A node as it is kept.
 struct Kept {
-    vec4 position, velocity;  // see eyes.glsl
+    vec4 position, velocity;  // see node_access.glsl
 };
 
 Node node_of(Kept kept) {

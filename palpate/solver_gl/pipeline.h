@@ -9,7 +9,7 @@ namespace palpate::gpu {
 
 #include "palpate/solver_gl/bindings.inl"
 
-/// The moving state at one moment; eyes.glsl says what it holds.
+/// The moving state at one moment; node_access.glsl says what it holds.
 struct Moving {
     gl::Field positions, velocities;
 };

@@ -32,13 +32,13 @@ Placement::Placement(const Body& body) {
         slot.resize(body.count());
         std::iota(slot.begin(), slot.end(), 0);
     } else {
-        lay_grid(body);
+        write_grid(body);
     }
     for (std::size_t i = 0; i < body.count(); ++i)
         if (body.area[i] > 0) rim.push_back(slot[i]);
 }
 
-void Placement::lay_grid(const Body& body) {
+void Placement::write_grid(const Body& body) {
     const Box box = box_of(body.at);
     auto number = [&](ivec3 p) { return (p.z * box.dims.y + p.y) * box.dims.x + p.x; };
     int room = 0;

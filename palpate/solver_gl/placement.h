@@ -21,7 +21,7 @@ struct Placement {
     std::vector<int> rim;      // the slots of the nodes of the outside, which alone tips touch
 
  private:
-    void lay_grid(const Body& body);
+    void write_grid(const Body& body);
 };
 
 }  // namespace palpate::gpu

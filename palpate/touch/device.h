@@ -37,7 +37,7 @@ struct DeviceSpec {
     float stiffness = 1000;      // N/m, the stiffest virtual wall that it renders without vibrating; 1000 is
                                  // usual for a desktop arm
     bool turns = false;          // it measures orientation
-    bool dead_man_switch = false;  // it has a dead-man switch, which takes all force away once nobody holds
+    bool dead_man_switch = false;  // it has a dead-man switch, which takes all force away once no one holds
                                    // it
     bool paces = false;            // its read() blocks until the device's own servo tick, which the loop then
                                    // follows

@@ -45,7 +45,7 @@ void let_go_at_halt() {
 
 void add_touch(Touch& touch) {
     for (auto& place : touches)
-        if (Touch* nobody = nullptr; place.compare_exchange_strong(nobody, &touch)) return;
+        if (Touch* empty = nullptr; place.compare_exchange_strong(empty, &touch)) return;
     throw Error("too many devices at once", touch.device().name, "close some of them");
 }
 

@@ -72,12 +72,12 @@ void check(const DeviceSpec& device) {
         bool may_be_zero = false;
     };
     // A device with a peak torque must give a continuous one, too.
-    const bool turns_nobody = device.peak_torque == 0 && device.lasting_torque == 0;
+    const bool force_only = device.peak_torque == 0 && device.lasting_torque == 0;
     const Field all[] = {{"workspace", device.workspace},
                          {"peak_force", device.peak_force},
                          {"lasting_force", device.lasting_force},
-                         {"peak_torque", device.peak_torque, turns_nobody},
-                         {"lasting_torque", device.lasting_torque, turns_nobody},
+                         {"peak_torque", device.peak_torque, force_only},
+                         {"lasting_torque", device.lasting_torque, force_only},
                          {"stiffness", device.stiffness}};
     for (const Field& one : all)
         if (!(one.value > 0 || one.may_be_zero) || !std::isfinite(one.value))

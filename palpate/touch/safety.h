@@ -62,7 +62,7 @@ inline std::span<const Named<Held>> names(Held) {
     static constexpr Named<Held> all[] = {{Held::no, "no"},
                                           {Held::waiting, "waiting for a small force"},
                                           {Held::ramping, "ramping up"},
-                                          {Held::placed, "set anew"},
+                                          {Held::placed, "set again"},
                                           {Held::jumped, "the hand jumped"},
                                           {Held::not_finite, "not a number"},
                                           {Held::stale, "old samples"},

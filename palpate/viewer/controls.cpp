@@ -219,7 +219,7 @@ void Controls::show_dent_width(Viewer& viewer) {
             viewer.change({fmt::format("{}.{}.touch.width={}", kind, i + 1, number(width / 1000))}, s.again);
         about("the width of dents in it: their standard deviation");
     };
-    // Asked for anew each time, since a change makes another scene.
+    // Fetched each time, since a change makes another scene.
     auto scene = [&]() -> const Scene& { return viewer.experiment()->scene(); };
     for (std::size_t i = 0; i < scene().bodies.size(); ++i) show("body", i, scene().bodies[i]);
     for (std::size_t i = 0; i < scene().surfaces.size(); ++i) show("surface", i, scene().surfaces[i]);

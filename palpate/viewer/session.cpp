@@ -26,9 +26,9 @@ Change all_cores() {
 
 void Session::open(SceneText source, std::vector<Change> changes) {
     coming_.reset();
-    const bool told = std::ranges::any_of(
+    const bool given = std::ranges::any_of(
         changes, [](const Change& change) { return change.starts_with("simulation.threads="); });
-    if (!told) changes.push_back(all_cores());
+    if (!given) changes.push_back(all_cores());
     import_ = std::make_unique<Import>(std::move(source), std::move(changes));
 }
 

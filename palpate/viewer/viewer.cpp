@@ -47,7 +47,7 @@ void Viewer::let_go() {
 // Changes the experiment; the one beside it continues from there. Not during a replay.
 void Viewer::alter(const std::function<void()>& how, const std::string& said) {
     if (!experiment()) return;
-    if (replaying()) return message_.say("a recording is replayed; press R to begin anew");
+    if (replaying()) return message_.say("a recording is being replayed; press R to start over");
     const bool done = message_.attempt([&] {
         how();
         session_.compare_anew();
@@ -153,7 +153,7 @@ void Viewer::reach_in() {
     } else if (hit->surface >= experiment()->models().models.size()) {
         message_.say("nothing moves this surface; it can be dented");
     } else if (replaying()) {
-        message_.say("a recording is replayed; press R to begin anew");
+        message_.say("a recording is being replayed; press R to start over");
     } else {
         options.mode == Mode::pin ? pin_at(*hit) : pull_or_press(*hit);
     }

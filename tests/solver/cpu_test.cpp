@@ -1,7 +1,7 @@
 // The backend cpu against the reference: the same physics, with many nodes at once and on many threads.
 #include "palpate/base/team.h"
 #include "palpate/body/select.h"
-#include "palpate/solver/cpu/laid_body.h"
+#include "palpate/solver/cpu/body_memory.h"
 #include "palpate/solver/cpu/layout.h"
 #include "palpate/solver/machine.h"
 #include "palpate/solver/solver.h"
@@ -159,7 +159,7 @@ TEST(Cpu, ATurnedBodyMovesAsAnUnturnedOne) {
             if (trial >= 2) turn.turn = turn.turn * glm::scale(mat4(1), vec3(-1, 1, 1));
             Body other = body;
             other.positions = turn.points(body.positions);
-            EXPECT_NE(cpu::LaidBody(other, {}, 4).view().springs, cpu::Springs::table);
+            EXPECT_NE(cpu::BodyMemory(other, {}, 4).view().springs, cpu::Springs::table);
             EXPECT_EQ(mass(other), mass(body));
             EXPECT_NEAR(highest_frequency(other), highest_frequency(body), 2e-2 * highest_frequency(body));
 

@@ -1,7 +1,7 @@
 // Springs in a table on the backend cpu: nets and sheets of every kind move as in the reference, however
 // their nodes lie in memory.
 #include "palpate/body/lattice.h"
-#include "palpate/solver/cpu/laid_body.h"
+#include "palpate/solver/cpu/body_memory.h"
 #include "palpate/solver/machine.h"
 #include "palpate/solver/stability.h"
 #include "tests/integrators.h"
@@ -277,7 +277,7 @@ T number(const void* records, std::size_t record, std::size_t numbers, std::size
 
 // The force of each node's springs is all there, in its order.
 void expect_all_ties(const Body& body, int width) {
-    const LaidBody laid(body, {}, width);
+    const BodyMemory laid(body, {}, width);
     const Layout& layout = laid.layout();
     const Ties& ties = laid.view().ties;
     ASSERT_EQ(laid.view().springs, Springs::table);
@@ -331,7 +331,7 @@ TEST(Tables, KeepNoMoreOfARingThanItsNormalNeeds) {
 // The nodes of a register have about as many springs, and neighbours lie near.
 TEST(Tables, LieCloseWhateverTheOrder) {
     const Body body = sheet({60, 70}, 7);
-    const LaidBody laid(body, {}, 16);
+    const BodyMemory laid(body, {}, 16);
     const Table springs = table(body);
     std::size_t ties = 0;
     double apart = 0;

@@ -1,5 +1,5 @@
 #include "palpate/base/team.h"
-#include "palpate/solver/cpu/laid_body.h"
+#include "palpate/solver/cpu/body_memory.h"
 #include "palpate/solver/machine.h"
 #include "palpate/solver/pushes.h"
 
@@ -18,7 +18,7 @@ class Cpu final : public Machine {
     Cpu(const Body& body, const Simulation& simulation, Team* team)
         : body_(body),
           scheme_(scheme(simulation.integrator)),
-          laid_(body, simulation, kernels_.lanes),
+          memory_(body, simulation, kernels_.lanes),
           quiet_(make_pass(body, simulation)),
           own_team_(team ? nullptr : std::make_unique<Team>(simulation.threads)),
           team_(team ? *team : *own_team_) {
@@ -26,11 +26,11 @@ class Cpu final : public Machine {
             if (needs(scheme_, where)) states_[where] = fields(where == between && velocities_stay());
         before_ = fields(false);
         for (StateBuffer where : {current, between, further})
-            if (states_[where].x) laid_.let_neighbours_see(states_[where]);
+            if (states_[where].x) memory_.add_neighbour_arrays(states_[where]);
         share_out();
     }
 
-    bool change(std::span<const int> nodes) override { return laid_.change(body_, nodes); }
+    bool change(std::span<const int> nodes) override { return memory_.change(body_, nodes); }
 
     Findings run(const Call& call) override {
         for (const Guide& guide : call.guides) set_velocity(std::size_t(guide.node), guide.velocity);
@@ -60,7 +60,7 @@ class Cpu final : public Machine {
 
     void shift(dvec3 place, dvec3 velocity) override {
         const Fields& f = states_[current];
-        for (int s : laid_.layout().slot) {
+        for (int s : memory_.layout().slot) {
             f.x[s] = float(f.x[s] - place.x), f.y[s] = float(f.y[s] - place.y),
             f.z[s] = float(f.z[s] - place.z);
             f.vx[s] = float(f.vx[s] - velocity.x), f.vy[s] = float(f.vy[s] - velocity.y);
@@ -75,36 +75,36 @@ class Cpu final : public Machine {
         std::vector<Array<float>> arrays;
         Fields brought_up{};
         for_each_field([&](float* Fields::*f) {
-            arrays.emplace_back(laid_.layout(), int(arrays.size()));
+            arrays.emplace_back(memory_.layout(), int(arrays.size()));
             brought_up.*f = arrays.back().data();
         });
         const Fields states[] = {states_[current], brought_up, {}, {}};
-        const Task task{laid_.view(), pass, at_now, states, {}};
+        const Task task{memory_.view(), pass, at_now, states, {}};
         Largest none;
         kernels_.show(task, 0, all_blocks());
         kernels_.pass(task, 0, all_blocks(), none);
         std::vector<dvec3> velocities;
-        for (int s : laid_.layout().slot)
+        for (int s : memory_.layout().slot)
             velocities.emplace_back(brought_up.vx[s], brought_up.vy[s], brought_up.vz[s]);
         return velocities;
     }
 
     void show(const Origin& origin, std::vector<vec3>& positions, std::vector<vec3>& normals) const override {
-        const Fields& free = states_[between];  // between calls nobody needs it
-        const Task task{laid_.view(), quiet_, at_now, states_, {}};
+        const Fields& free = states_[between];  // unused between calls
+        const Task task{memory_.view(), quiet_, at_now, states_, {}};
         kernels_.show(task, 0, all_blocks());
         kernels_.normals(task, 0, all_blocks(), free.x, free.y, free.z);
         positions.resize(body_.count());
         normals.resize(body_.count());
         for (std::size_t i = 0; i < body_.count(); ++i) {
-            const int s = laid_.layout().slot[i];
+            const int s = memory_.layout().slot[i];
             positions[i] = vec3(origin.place + place_of(i));
             normals[i] = vec3(free.x[s], free.y[s], free.z[s]);
         }
     }
 
     std::size_t memory() const override {
-        std::size_t bytes = laid_.bytes();
+        std::size_t bytes = memory_.bytes();
         for (const Array<float>& array : arrays_) bytes += array.bytes();
         return bytes;
     }
@@ -124,7 +124,7 @@ class Cpu final : public Machine {
         int number = 0;
         for_each_field([&](float* Fields::*f) {
             if (with_velocities_of_now && number++ >= 3) return;
-            arrays_.push_back(laid_.array());
+            arrays_.push_back(memory_.array());
             made.*f = arrays_.back().data();
         });
         return made;
@@ -132,14 +132,14 @@ class Cpu final : public Machine {
 
     // The blocks of each member of the team: those from parts_[member] on.
     void share_out() {
-        const std::size_t blocks = laid_.layout().blocks.size();
+        const std::size_t blocks = memory_.layout().blocks.size();
         for (int member = 0; member <= team_.members(); ++member)
             parts_.push_back(int(blocks * std::size_t(member) / std::size_t(team_.members())));
         for (std::vector<Bounds>& bounds : moved_) bounds.resize(blocks);
     }
-    int all_blocks() const { return int(laid_.layout().blocks.size()); }
+    int all_blocks() const { return int(memory_.layout().blocks.size()); }
     void copy(const Fields& from, const Fields& to) const {
-        const std::size_t bytes = std::size_t(laid_.layout().slots) * sizeof(float);
+        const std::size_t bytes = std::size_t(memory_.layout().slots) * sizeof(float);
         for_each_field([&](float* Fields::*f) { std::memcpy(to.*f, from.*f, bytes); });
     }
 
@@ -153,7 +153,7 @@ class Cpu final : public Machine {
         const Pushes pushing = make_pushes(pushed_slots);
         Findings found;
         found.by_pushes.assign(influences.pushes.size(), dvec3(0));
-        given_.assign(influences.presses.size() * laid_.layout().blocks.size(), dvec3(0));
+        given_.assign(influences.presses.size() * memory_.layout().blocks.size(), dvec3(0));
         std::vector<Largest> largest(std::size_t(team_.members()));
         std::atomic<bool> torn = false;
 
@@ -165,14 +165,14 @@ class Cpu final : public Machine {
             for (std::size_t where = 0; where < 4; ++where) moved[where] = moved_[where].data();
             const auto mine = own(pushes, first, end), mine_each = own(each, first, end);
             hold(pushing, mine);
-            const Task begin{laid_.view(), call.constant, at_now, states, moved, &pushing};
+            const Task begin{memory_.view(), call.constant, at_now, states, moved, &pushing};
             if (states[current].places) {
                 kernels_.show(begin, first, end);
                 team_.meet();
             }
             if (touched) kernels_.find_bounds(begin, first, end);
             call.for_each_pass([&](const Pass& pass, const PassPlan& plan) {
-                const Task task{laid_.view(), pass, plan, states, moved, &pushing};
+                const Task task{memory_.view(), pass, plan, states, moved, &pushing};
                 aim(pushing, mine, pass.time);
                 if (plan.impulse > 0) {
                     if (pass.tips > 0) kernels_.give(task, first, end, given_.data());
@@ -186,7 +186,7 @@ class Cpu final : public Machine {
                 }
             });
             let_go(pushing, mine);
-            const Task last{laid_.view(), quiet_, at_now, states, moved};
+            const Task last{memory_.view(), quiet_, at_now, states, moved};
             if (kernels_.torn(last, first, end)) torn = true;
         });
         for (const Largest& of_member : largest) {
@@ -211,13 +211,13 @@ class Cpu final : public Machine {
     std::vector<SlotPush> in_slots(std::span<const NodePush> pushes) const {
         std::vector<SlotPush> all;
         for (std::size_t p = 0; p < pushes.size(); ++p)
-            all.push_back({laid_.layout().slot[std::size_t(pushes[p].node)], p, pushes[p]});
+            all.push_back({memory_.layout().slot[std::size_t(pushes[p].node)], p, pushes[p]});
         std::ranges::stable_sort(all, {}, &SlotPush::slot);
         return all;
     }
     std::span<const SlotPush> own(const std::vector<SlotPush>& pushes, int first_block, int end_block) const {
         if (first_block == end_block) return {};
-        const auto& blocks = laid_.layout().blocks;
+        const auto& blocks = memory_.layout().blocks;
         const auto first = std::ranges::lower_bound(pushes, blocks[std::size_t(first_block)].first_slot, {},
                                                     &SlotPush::slot),
                    end = std::ranges::lower_bound(pushes, blocks[std::size_t(end_block) - 1].end_slot, {},
@@ -226,7 +226,7 @@ class Cpu final : public Machine {
     }
     // Memory for them is made when the first come.
     Pushes make_pushes(std::span<const int> slots) {
-        while (!slots.empty() && push_arrays_.size() < 7) push_arrays_.push_back(laid_.array());
+        while (!slots.empty() && push_arrays_.size() < 7) push_arrays_.push_back(memory_.array());
         if (push_arrays_.empty()) return {};
         auto array = [&](std::size_t k) { return push_arrays_[k].data(); };
         return {slots, array(0), array(1), array(2), array(3), array(4), array(5), array(6)};
@@ -258,27 +258,27 @@ class Cpu final : public Machine {
     }
 
     dvec3 place_of(std::size_t i) const {
-        const int s = laid_.layout().slot[i];
+        const int s = memory_.layout().slot[i];
         const Fields& f = states_[current];
         return dvec3(body_.positions[i]) + dvec3(f.x[s], f.y[s], f.z[s]);
     }
     dvec3 velocity_of(std::size_t i) const {
-        const int s = laid_.layout().slot[i];
+        const int s = memory_.layout().slot[i];
         const Fields& f = states_[current];
         return {f.vx[s], f.vy[s], f.vz[s]};
     }
     void place(std::size_t i, dvec3 p) {
-        const double finest = laid_.view().finest,
+        const double finest = memory_.view().finest,
                      large = 4194304 * finest;  // as the kernel does at the end of a call
         dvec3 way = p - dvec3(body_.positions[i]);
         for (int k = 0; k < 3; ++k)
             if (std::abs(way[k]) < large) way[k] = finest * std::round(way[k] / finest);
-        const int s = laid_.layout().slot[i];
+        const int s = memory_.layout().slot[i];
         const Fields& f = states_[current];
         f.x[s] = float(way.x), f.y[s] = float(way.y), f.z[s] = float(way.z);
     }
     void set_velocity(std::size_t i, dvec3 v) {
-        const int s = laid_.layout().slot[i];
+        const int s = memory_.layout().slot[i];
         const Fields& f = states_[current];
         f.vx[s] = float(v.x), f.vy[s] = float(v.y), f.vz[s] = float(v.z);
     }
@@ -288,7 +288,7 @@ class Cpu final : public Machine {
     const Body& body_;
     const Scheme& scheme_;
     const Kernels kernels_ = kernels();
-    LaidBody laid_;
+    BodyMemory memory_;
     const Pass quiet_;  // nothing touches or moves it
     std::unique_ptr<Team> own_team_;
     Team& team_;

@@ -5,7 +5,7 @@
 
 namespace palpate::cpu {
 
-LaidHinges::LaidHinges(const Body& body, const Layout& layout, int lanes) : lanes_(std::size_t(lanes)) {
+HingeMemory::HingeMemory(const Body& body, const Layout& layout, int lanes) : lanes_(std::size_t(lanes)) {
     const std::vector<std::vector<OwnHinge>> hinges = own_hinges(body);
     const auto slots = std::size_t(layout.slots);
     slices_.resize((slots + lanes_ - 1) / lanes_);
@@ -40,12 +40,12 @@ LaidHinges::LaidHinges(const Body& body, const Layout& layout, int lanes) : lane
         }
 }
 
-void LaidHinges::write(std::size_t hinge, std::size_t slot, const std::array<float, 4>& last) {
+void HingeMemory::write(std::size_t hinge, std::size_t slot, const std::array<float, 4>& last) {
     for (std::size_t k = 0; k < last.size(); ++k)
         number(hinge, slot, numbers - last.size() + k) = std::bit_cast<std::uint32_t>(last[k]);
 }
 
-std::uint32_t& LaidHinges::number(std::size_t hinge, std::size_t slot, std::size_t k) {
+std::uint32_t& HingeMemory::number(std::size_t hinge, std::size_t slot, std::size_t k) {
     const std::size_t record = std::size_t(slices_[slot / lanes_].first) + hinge;
     return records_.data()[(record * numbers + k) * lanes_ + slot % lanes_];
 }

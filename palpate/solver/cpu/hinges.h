@@ -7,9 +7,9 @@
 namespace palpate::cpu {
 
 /// The hinges of a body as kernels read them: it owns the memory that a Hinges points to.
-class LaidHinges {
+class HingeMemory {
  public:
-    LaidHinges(const Body& body, const Layout& layout, int lanes);
+    HingeMemory(const Body& body, const Layout& layout, int lanes);
 
     Hinges view() const { return {slices_.data(), records_.data()}; }
     std::size_t bytes() const { return records_.bytes() + slices_.size() * sizeof(Slice); }

@@ -33,7 +33,7 @@ namespace palpate::cpu::HWY_NAMESPACE {
 
 #include "palpate/base/pack-inl.h"
 
-// A pass in which nothing but springs and gravity acts. What the compiler knows to be none costs nothing.
+// A pass in which only springs and gravity act. What is constant zero here, the compiler leaves out.
 struct QuietPass : Pass {
     static constexpr float link_damping = 0;
     static constexpr int tips = 0, pushes = 0, obstacles = 0;
@@ -44,13 +44,13 @@ struct QuietPass : Pass {
     static bool calm(const Pass& p) { return p.link_damping == 0 && p.wind.w == 0; }
 };
 
-// What the physics asks of a node whatever its springs; hinges only of one that has them.
+// What node.inl asks of every node, whichever springs it has; of hinges only where there are some.
 template <class AnyPass>
-struct Eyes {
+struct NodeAccess {
     using Real = Pack;
     using Real3 = Pack3;
 
-    const Laid& body;
+    const BodyView& body;
     const AnyPass& pass;
     const Task& task;
     const Fields& at;
@@ -131,20 +131,22 @@ using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
 using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
 // The members of a base that depends on a template must be named.
-#define USE_EYES(P)                                                                                          \
-    using Eyes<P>::body, Eyes<P>::pass, Eyes<P>::task, Eyes<P>::at, Eyes<P>::id, Eyes<P>::origin,            \
-        Eyes<P>::area, Eyes<P>::cover, Eyes<P>::tip, Eyes<P>::push, Eyes<P>::push_target,                    \
-        Eyes<P>::push_stiffness, Eyes<P>::corner, Eyes<P>::distance_at, Eyes<P>::uphill_at, Eyes<P>::hinges, \
-        Eyes<P>::hinge_end, Eyes<P>::hinge_toward, Eyes<P>::hinge_passing, Eyes<P>::hinge_stiffness,         \
-        Eyes<P>::hinge_rest, Eyes<P>::hinge_area_square, Eyes<P>::of_nodes;                                  \
-    using typename Eyes<P>::Real, typename Eyes<P>::Real3;
+#define USE_NODE_ACCESS(P)                                                                                  \
+    using NodeAccess<P>::body, NodeAccess<P>::pass, NodeAccess<P>::task, NodeAccess<P>::at,                 \
+        NodeAccess<P>::id, NodeAccess<P>::origin, NodeAccess<P>::area, NodeAccess<P>::cover,                \
+        NodeAccess<P>::tip, NodeAccess<P>::push, NodeAccess<P>::push_target, NodeAccess<P>::push_stiffness, \
+        NodeAccess<P>::corner, NodeAccess<P>::distance_at, NodeAccess<P>::uphill_at, NodeAccess<P>::hinges, \
+        NodeAccess<P>::hinge_end, NodeAccess<P>::hinge_toward, NodeAccess<P>::hinge_passing,                \
+        NodeAccess<P>::hinge_stiffness, NodeAccess<P>::hinge_rest, NodeAccess<P>::hinge_area_square,        \
+        NodeAccess<P>::of_nodes;                                                                            \
+    using typename NodeAccess<P>::Real, typename NodeAccess<P>::Real3;
 
 // Nodes of a grid: their neighbours along a link are as far away for all of them.
 template <class Links, int bits_per_link, bool along_axes, bool with_strength, class AnyPass = Pass>
-struct GridNode : Eyes<AnyPass> {
+struct GridPhysics : NodeAccess<AnyPass> {
     using WithPass = AnyPass;
-    using Quiet = GridNode<Links, bits_per_link, along_axes, with_strength, QuietPass>;
-    USE_EYES(AnyPass)
+    using Quiet = GridPhysics<Links, bits_per_link, along_axes, with_strength, QuietPass>;
+    USE_NODE_ACCESS(AnyPass)
     static constexpr int per_word = bits_per_link == 1 ? 32 : 10;
     static constexpr int words = (Links::count + per_word - 1) / per_word;
     static constexpr bool masked = bits_per_link == 1;
@@ -173,9 +175,9 @@ struct GridNode : Eyes<AnyPass> {
     Pack ahead[3][2 * Links::reach + 1];  // from the node along each axis, in spacings: less where it is now
     Pack half_strength;
 
-    FN GridNode(const Task& s, const AnyPass& p, const Constants& c, const Fields& from, int run,
-                std::ptrdiff_t slot)
-        : Eyes<AnyPass>{s.body, p, s, from, slot},
+    FN GridPhysics(const Task& s, const AnyPass& p, const Constants& c, const Fields& from, int run,
+                   std::ptrdiff_t slot)
+        : NodeAccess<AnyPass>{s.body, p, s, from, slot},
           constants(c),
           offsets(s.body.offsets + run * Links::count),
           x(from.x + slot),
@@ -256,10 +258,10 @@ struct GridNode : Eyes<AnyPass> {
 // Nodes with their springs written out, and their hinges, if the body has any. What acts on a node whatever
 // its springs, obstacles and tools, is made for these alone.
 template <class AnyPass = Pass, bool with_hinges = false>
-struct TableNode : Eyes<AnyPass> {
+struct TablePhysics : NodeAccess<AnyPass> {
     using WithPass = AnyPass;
-    using Quiet = TableNode<QuietPass, with_hinges>;
-    USE_EYES(AnyPass)
+    using Quiet = TablePhysics<QuietPass, with_hinges>;
+    USE_NODE_ACCESS(AnyPass)
     struct Constants {
         explicit Constants(const Pass&) {}
     };
@@ -273,9 +275,9 @@ struct TableNode : Eyes<AnyPass> {
         float share[HWY_LANES(float)], stiffness[HWY_LANES(float)], longest[HWY_LANES(float)];
     };
 
-    FN TableNode(const Task& s, const AnyPass& p, const Constants&, const Fields& from, int,
-                 std::ptrdiff_t slot)
-        : Eyes<AnyPass>{s.body, p, s, from, slot} {}
+    FN TablePhysics(const Task& s, const AnyPass& p, const Constants&, const Fields& from, int,
+                    std::ptrdiff_t slot)
+        : NodeAccess<AnyPass>{s.body, p, s, from, slot} {}
 
     FN const Slice& slice() const { return body.ties.slices[std::size_t(id) / lanes()]; }
     FN const Pulling& pulling(int l) const {
@@ -324,9 +326,9 @@ struct TableNode : Eyes<AnyPass> {
 
 // ---- what is done with them ----
 
-template <class At>
-FN typename At::Node load_node(const Laid& body, const Fields& from, std::ptrdiff_t i) {
-    typename At::Node node;
+template <class Physics>
+FN typename Physics::Node load_node(const BodyView& body, const Fields& from, std::ptrdiff_t i) {
+    typename Physics::Node node;
     node.position = load(from.x, from.y, from.z, i);
     node.velocity = load(from.vx, from.vy, from.vz, i);
     node.inverse_mass = load(body.inverse_mass + i);
@@ -338,52 +340,52 @@ FN void store_node(const Node& node, const Fields& to, std::ptrdiff_t i) {
     store(node.velocity, to.vx, to.vy, to.vz, i);
 }
 
-template <class At, class Do>
-FN void for_each_pack(const Task& s, const typename At::WithPass& pass,
-                      const typename At::Constants& constants, const Fields& at, int block, Do act) {
+template <class Physics, class Do>
+FN void for_each_pack(const Task& s, const typename Physics::WithPass& pass,
+                      const typename Physics::Constants& constants, const Fields& at, int block, Do act) {
     for (int r = s.body.blocks[block].first_run; r < s.body.blocks[block].end_run; ++r) {
         const Run run = s.body.runs[r];
         for (std::ptrdiff_t i = run.first; i < run.first + run.count; i += std::ptrdiff_t(lanes())) {
-            At eyes(s, pass, constants, at, r, i);
-            act(eyes, i);
+            Physics physics(s, pass, constants, at, r, i);
+            act(physics, i);
         }
     }
 }
-template <class At, class Do>
+template <class Physics, class Do>
 FN void for_each_pack(const Task& s, int first_block, int end_block, Do act) {
-    const typename At::WithPass pass(s.pass);
-    const typename At::Constants constants(pass);
+    const typename Physics::WithPass pass(s.pass);
+    const typename Physics::Constants constants(pass);
     for (int block = first_block; block < end_block; ++block)
-        for_each_pack<At>(s, pass, constants, s.states[s.plan.at], block, act);
+        for_each_pack<Physics>(s, pass, constants, s.states[s.plan.at], block, act);
 }
 
 // Forces and the motion that they bring.
-template <class At>
-FN void move(const Task& s, const typename At::WithPass& pass, const typename At::Constants& constants,
-             int block) {
+template <class Physics>
+FN void move(const Task& s, const typename Physics::WithPass& pass,
+             const typename Physics::Constants& constants, int block) {
     const Fields start = s.states[s.plan.start], at = s.states[s.plan.at], next = s.states[s.plan.next],
                  total = s.states[sum];
-    for_each_pack<At>(s, pass, constants, at, block, [&](At& eyes, std::ptrdiff_t i) INLINED {
-        const auto node = load_node<At>(s.body, at, i);
-        const Pack3 change = pass.kick > 0 ? eyes.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
+    for_each_pack<Physics>(s, pass, constants, at, block, [&](Physics& physics, std::ptrdiff_t i) INLINED {
+        const auto node = load_node<Physics>(s.body, at, i);
+        const Pack3 change = pass.kick > 0 ? physics.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
         if (pass.part > 0) {
-            const auto before = load_node<At>(s.body, s.plan.opens ? at : total, i);
-            store_node(eyes.collect(before, node, change), total, i);
+            const auto before = load_node<Physics>(s.body, s.plan.opens ? at : total, i);
+            store_node(physics.collect(before, node, change), total, i);
         }
         auto from = node;
-        if (s.plan.start != s.plan.at) from = load_node<At>(s.body, start, i);
-        store_node(eyes.integrate(from, node, change), next, i);
+        if (s.plan.start != s.plan.at) from = load_node<Physics>(s.body, start, i);
+        store_node(physics.integrate(from, node, change), next, i);
     });
 }
 
 // Out of the obstacles. `was`: where the step began.
 HWY_NOINLINE void push_out(const Task& s, int block, const Fields& was) {
     const Fields next = s.states[s.plan.next];
-    const TableNode<>::Constants none(s.pass);
-    for_each_pack<TableNode<>>(
-        s, s.pass, none, next, block, [&](TableNode<>& eyes, std::ptrdiff_t i) INLINED {
+    const TablePhysics<>::Constants none(s.pass);
+    for_each_pack<TablePhysics<>>(
+        s, s.pass, none, next, block, [&](TablePhysics<>& physics, std::ptrdiff_t i) INLINED {
             const Pack3 before = load(was.x, was.y, was.z, i);
-            store_node(eyes.collide(load_node<TableNode<>>(s.body, next, i), before), next, i);
+            store_node(physics.collide(load_node<TablePhysics<>>(s.body, next, i), before), next, i);
         });
 }
 
@@ -458,18 +460,18 @@ void show(const Task& s, int first_block, int end_block) {
 
 // A pass: block after block, each whole while it is in the first cache. Where nothing is near, nothing is
 // looked for.
-template <class At>
+template <class Physics>
 void pass(const Task& s, int first_block, int end_block, Largest& largest) {
-    using Quiet = typename At::Quiet;
+    using Quiet = typename Physics::Quiet;
     const typename Quiet::WithPass quiet_pass(s.pass);
     const typename Quiet::Constants quiet_constants(quiet_pass);
-    const typename At::Constants constants(s.pass);
+    const typename Physics::Constants constants(s.pass);
     const bool tools = s.pass.tips > 0 || s.pass.pushes > 0;
     for (int b = first_block; b < end_block; ++b) {
         const Block& block = s.body.blocks[b];
         const Kept was(s, block);
         if (!QuietPass::calm(s.pass) || (tools && touched(s, b, s.moved[s.plan.at][b])))
-            move<At>(s, s.pass, constants, b);
+            move<Physics>(s, s.pass, constants, b);
         else
             move<Quiet>(s, quiet_pass, quiet_constants, b);
         if (tools || s.pass.obstacles > 0) {
@@ -499,25 +501,26 @@ FN void add(Pack3 force, double seconds, dvec3& sum) {
 
 void give(const Task& s, int first_block, int end_block, dvec3* given) {
     const Fields at = s.states[s.plan.at];
-    const TableNode<>::Constants none(s.pass);
+    const TablePhysics<>::Constants none(s.pass);
     for (int b = first_block; b < end_block; ++b) {
         if (!touched(s, b, s.moved[s.plan.at][b])) continue;
-        for_each_pack<TableNode<>>(s, s.pass, none, at, b, [&](TableNode<>& eyes, std::ptrdiff_t i) INLINED {
-            const Pack3 p = load(at.x, at.y, at.z, i);
-            for (int t = 0; t < s.pass.tips; ++t) {
-                const Pack3 force = eyes.tip_force(p, t);
-                if (any_node(dot(force, force) > 0.0f))
-                    add(force, s.plan.impulse, given[b * s.pass.tips + t]);
-            }
-        });
+        for_each_pack<TablePhysics<>>(s, s.pass, none, at, b,
+                                      [&](TablePhysics<>& physics, std::ptrdiff_t i) INLINED {
+                                          const Pack3 p = load(at.x, at.y, at.z, i);
+                                          for (int t = 0; t < s.pass.tips; ++t) {
+                                              const Pack3 force = physics.tip_force(p, t);
+                                              if (any_node(dot(force, force) > 0.0f))
+                                                  add(force, s.plan.impulse, given[b * s.pass.tips + t]);
+                                          }
+                                      });
     }
 }
 
-template <class At>
+template <class Physics>
 void normals(const Task& s, int first_block, int end_block, float* x, float* y, float* z) {
     const Fields at = s.states[s.plan.at];
-    for_each_pack<At>(s, first_block, end_block, [&](At& eyes, std::ptrdiff_t i) INLINED {
-        store(eyes.outward(load(at.x, at.y, at.z, i)), x, y, z, i);
+    for_each_pack<Physics>(s, first_block, end_block, [&](Physics& physics, std::ptrdiff_t i) INLINED {
+        store(physics.outward(load(at.x, at.y, at.z, i)), x, y, z, i);
     });
 }
 
@@ -534,53 +537,53 @@ FN bool is_near_rest(const Task& s, const Block& block) {
     return !any_node(gone > 0.0f);
 }
 
-template <class At>
+template <class Physics>
 bool torn(const Task& s, int first_block, int end_block) {
     const Fields at = s.states[s.plan.at];
     Pack wrong = 0.0f;
     for (int b = first_block; b < end_block; ++b)
         if (!is_near_rest(s, s.body.blocks[b]))
-            for_each_pack<At>(s, b, b + 1, [&](At& eyes, std::ptrdiff_t i) INLINED {
-                wrong += eyes.torn(load(at.x, at.y, at.z, i));
+            for_each_pack<Physics>(s, b, b + 1, [&](Physics& physics, std::ptrdiff_t i) INLINED {
+                wrong += physics.torn(load(at.x, at.y, at.z, i));
             });
     return any_node(wrong > 0.0f);
 }
 
 // Calls act<Node>() with the nodes that a body is made of.
 template <class Act>
-auto of(const Laid& body, Act act) {
+auto of(const BodyView& body, Act act) {
     switch (body.springs) {
         case Springs::lattice_whole:
-            return act.template operator()<GridNode<LatticeStencil, 1, true, false>>();
+            return act.template operator()<GridPhysics<LatticeStencil, 1, true, false>>();
         case Springs::lattice:
-            return act.template operator()<GridNode<LatticeStencil, 3, true, false>>();
+            return act.template operator()<GridPhysics<LatticeStencil, 3, true, false>>();
         case Springs::lattice_with_strength:
-            return act.template operator()<GridNode<LatticeStencil, 3, true, true>>();
+            return act.template operator()<GridPhysics<LatticeStencil, 3, true, true>>();
         case Springs::turned_lattice:
-            return act.template operator()<GridNode<LatticeStencil, 3, false, true>>();
+            return act.template operator()<GridPhysics<LatticeStencil, 3, false, true>>();
         case Springs::cloth:
-            return act.template operator()<GridNode<ClothStencil, 1, true, false>>();
+            return act.template operator()<GridPhysics<ClothStencil, 1, true, false>>();
         case Springs::turned_cloth:
-            return act.template operator()<GridNode<ClothStencil, 1, false, true>>();
+            return act.template operator()<GridPhysics<ClothStencil, 1, false, true>>();
         case Springs::volume:
-            return act.template operator()<GridNode<VolumeStencil, 1, true, true>>();
+            return act.template operator()<GridPhysics<VolumeStencil, 1, true, true>>();
         case Springs::turned_volume:
-            return act.template operator()<GridNode<VolumeStencil, 1, false, true>>();
+            return act.template operator()<GridPhysics<VolumeStencil, 1, false, true>>();
         case Springs::table:
             break;
     }
-    return body.hinges.slices ? act.template operator()<TableNode<Pass, true>>()
-                              : act.template operator()<TableNode<>>();
+    return body.hinges.slices ? act.template operator()<TablePhysics<Pass, true>>()
+                              : act.template operator()<TablePhysics<>>();
 }
 
 void pass_over(const Task& s, int first_block, int end_block, Largest& largest) {
-    of(s.body, [&]<class At>() { pass<At>(s, first_block, end_block, largest); });
+    of(s.body, [&]<class Physics>() { pass<Physics>(s, first_block, end_block, largest); });
 }
 void normals_over(const Task& s, int first_block, int end_block, float* x, float* y, float* z) {
-    of(s.body, [&]<class At>() { normals<At>(s, first_block, end_block, x, y, z); });
+    of(s.body, [&]<class Physics>() { normals<Physics>(s, first_block, end_block, x, y, z); });
 }
 bool torn_over(const Task& s, int first_block, int end_block) {
-    return of(s.body, [&]<class At>() { return torn<At>(s, first_block, end_block); });
+    return of(s.body, [&]<class Physics>() { return torn<Physics>(s, first_block, end_block); });
 }
 
 Kernels all() {

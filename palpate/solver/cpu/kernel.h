@@ -17,11 +17,11 @@ namespace palpate::cpu {
 struct Fields {
     float *x, *y, *z;     // m, from each node's place at rest
     float *vx, *vy, *vz;  // m/s
-    // The same, four floats a node, for whoever has to look up neighbours one by one (show); else null.
+    // The same, four floats a node, for kernels that look up neighbours one by one (show); else null.
     float *places, *speeds;
 };
 
-/// The springs a kernel is made for; other bodies write theirs out.
+/// The springs that a kernel is compiled for; all other bodies use a table.
 enum class Springs {
     lattice_whole,
     lattice,
@@ -64,8 +64,8 @@ inline float whole_within(float torn_at, vec3 way) {
     return std::max(0.499f * (std::sqrt(torn_at) - glm::length(way)), 0.0f);
 }
 
-/// A body as it lies in memory: all that stays the same.
-struct Laid {
+/// A body in memory: everything that does not change during a call.
+struct BodyView {
     Springs springs;
     const Run* runs;
     const Block* blocks;
@@ -98,7 +98,7 @@ struct Pushes {
 
 /// What a kernel works on: a pass over some of the blocks.
 struct Task {
-    const Laid& body;
+    const BodyView& body;
     const Pass& pass;
     const PassPlan& plan;
     const Fields* states;  // as StateBuffer counts them

@@ -52,9 +52,9 @@ bool fills_its_box(std::span<const ivec3> places) {
     return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z) == places.size();
 }
 
-class Laying {
+class GridLayout {
  public:
-    Laying(const Body& body, int lanes, Layout& layout)
+    GridLayout(const Body& body, int lanes, Layout& layout)
         : body_(body), stencil_(*body.grid()), lanes_(lanes), layout_(layout) {
         box_ = fills_its_box(body.at);
         choose_axis();
@@ -164,7 +164,7 @@ class Laying {
 }  // namespace
 
 Layout::Layout(const Body& body, int lanes) {
-    Laying(body, lanes, *this);
+    GridLayout(body, lanes, *this);
     make_blocks();
 }
 

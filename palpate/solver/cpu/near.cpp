@@ -6,19 +6,19 @@ namespace palpate::cpu {
 namespace {
 
 // Where the nodes of a block may be: its box at rest, grown by how far they have come.
-Bounds place(const Laid& body, int block, const Bounds& moved) {
+Bounds place(const BodyView& body, int block, const Bounds& moved) {
     const Bounds& rest = body.rest_bounds[block];
     return {rest.low + moved.low, rest.high + moved.high};
 }
 
-// A comparison that fails for what is no number says near: then the nodes are looked at themselves.
+// NaN fails every comparison, and counts as near: then the nodes themselves are tested.
 
 bool may_touch(const Bounds& box, vec3 centre, float reach) {
     const vec3 nearest = glm::clamp(centre, box.low, box.high);
     return !(glm::dot(centre - nearest, centre - nearest) > reach * reach);
 }
 
-bool may_touch(const Bounds& box, const Obstacle& o, const Laid& body) {
+bool may_touch(const Bounds& box, const Obstacle& o, const BodyView& body) {
     const vec3 half = 0.5f * box.size(), middle = box.centre();
     const vec3 rows[] = {vec3(o.x), vec3(o.y), vec3(o.z)};
     const float shift[] = {o.x.w, o.y.w, o.z.w};
@@ -41,7 +41,7 @@ bool may_touch(const Bounds& box, const Obstacle& o, const Laid& body) {
         // Beyond its grid a field says what it says at the rim, a few spacings.
         return !(o.place.w < f.spacing && apart(f.origin, f.origin + f.spacing * vec3(f.dims - 1)));
     }
-    return true;  // polygons stop what crosses them, wherever it has got to
+    return true;  // polygons stop what crosses them, however far it has gone
 }
 
 }  // namespace

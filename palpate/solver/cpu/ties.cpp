@@ -117,7 +117,7 @@ std::vector<int> order_for(const Table& springs, std::size_t nodes, int fan) {
     return order;
 }
 
-LaidTies::LaidTies(const Body& body, const Layout& layout, int lanes) : lanes_(std::size_t(lanes)) {
+TieMemory::TieMemory(const Body& body, const Layout& layout, int lanes) : lanes_(std::size_t(lanes)) {
     const Table springs = table(body);
     const std::vector<int> nodes = nodes_in(layout);
     slices_ = slices_for(springs, nodes, body.fan, lanes_);
@@ -140,12 +140,12 @@ LaidTies::LaidTies(const Body& body, const Layout& layout, int lanes) : lanes_(s
     }
 }
 
-void LaidTies::lead(std::size_t at, std::size_t slot) {
+void TieMemory::lead(std::size_t at, std::size_t slot) {
     std::byte* const record = pulling_.data() + at / lanes_ * lanes_ * pulling * sizeof(float);
     reinterpret_cast<std::uint32_t*>(record)[at % lanes_] = std::uint32_t(4 * slot);
 }
 
-void LaidTies::write(std::size_t at, const Tie& tie, const Body& body, std::size_t node) {
+void TieMemory::write(std::size_t at, const Tie& tie, const Body& body, std::size_t node) {
     const std::size_t record = at / lanes_ * lanes_, lane = at % lanes_;
     const vec3 way = body.positions[std::size_t(tie.to)] - body.positions[node];
     const float pulls[] = {way.x, way.y, way.z, tie.share * tie.stiffness,

@@ -22,9 +22,9 @@ TieCount count_ties(std::span<const Tie> ties, int fan);
 std::vector<int> order_for(const Table& springs, std::size_t nodes, int fan);
 
 /// The springs of a table as kernels read them: it owns the memory that a Ties points to.
-class LaidTies {
+class TieMemory {
  public:
-    LaidTies(const Body& body, const Layout& layout, int lanes);
+    TieMemory(const Body& body, const Layout& layout, int lanes);
 
     Ties view() const { return {slices_.data(), pulling_.data(), whole_.data()}; }
     /// m, of all springs the least (whole_within() in kernel.h).

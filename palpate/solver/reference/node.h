@@ -19,8 +19,8 @@ struct Surroundings {
     std::span<const NodePush> pushes = {};          // one a node,
     std::vector<int> push_of = {};                  // and the number of each node's, or -1
 
-    explicit Surroundings(const Body& of) : body(of) { lay_terms(); }
-    void lay_terms() {
+    explicit Surroundings(const Body& of) : body(of) { read_terms(); }
+    void read_terms() {
         hinges = own_hinges(body);
         springs = table(body);
         for (std::size_t t = 0; t < springs.ties.size(); ++t)
@@ -37,10 +37,10 @@ struct NodeStates {
     std::vector<glm::vec<3, Real>> positions, velocities;
 };
 
-/// A node with its backend's eyes: how it sees its neighbours. The physics is node.inl's.
-/// `with_hinges`: whether any may have some; what a compiler knows to be none costs nothing.
+/// The physics of one node (node.inl), with access to its neighbours.
+/// `with_hinges`: whether any may have some; known when compiled, so that bodies without any pay nothing.
 template <class Number, bool with_hinges = true>
-struct SeeingNode {
+struct NodePhysics {
     using Real = Number;
     using Real3 = glm::vec<3, Real>;
 
@@ -108,8 +108,8 @@ struct SeeingNode {
 
 /// Node `i` among the others at `now`.
 template <class Real, bool with_hinges = true>
-SeeingNode<Real, with_hinges> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now,
-                                  std::size_t i, std::span<const RoundTip> tips = {}) {
+NodePhysics<Real, with_hinges> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now,
+                                   std::size_t i, std::span<const RoundTip> tips = {}) {
     return {all,
             pass,
             now,
@@ -123,8 +123,8 @@ SeeingNode<Real, with_hinges> see(const Surroundings& all, const Pass& pass, con
 
 /// Node `i` as it is in `from`.
 template <class Real, bool with_hinges = true>
-typename SeeingNode<Real, with_hinges>::Node load(const Surroundings& all, const NodeStates<Real>& from,
-                                                  std::size_t i) {
+typename NodePhysics<Real, with_hinges>::Node load(const Surroundings& all, const NodeStates<Real>& from,
+                                                   std::size_t i) {
     return {from.positions[i], from.velocities[i], Real(all.body.inverse_mass[i])};
 }
 

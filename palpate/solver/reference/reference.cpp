@@ -10,9 +10,9 @@ using namespace reference;
 
 template <class Real, bool with_hinges>
 class Reference final : public Machine {
-    using At = SeeingNode<Real, with_hinges>;
-    using Node = typename At::Node;
-    using Real3 = typename At::Real3;
+    using Physics = NodePhysics<Real, with_hinges>;
+    using Node = typename Physics::Node;
+    using Real3 = typename Physics::Real3;
 
  public:
     Reference(const Body& body, const Simulation& simulation)
@@ -23,7 +23,7 @@ class Reference final : public Machine {
     }
 
     bool change(std::span<const int>) override {
-        around_.lay_terms();
+        around_.read_terms();
         return true;
     }
 
@@ -106,12 +106,13 @@ class Reference final : public Machine {
         const NodeStates<Real>&start = states_[plan.start], &at = states_[plan.at];
         NodeStates<Real>&next = states_[plan.next], &total = states_[sum];
         for (std::size_t i = 0; i < body_.count(); ++i) {
-            At eyes = see(i, at, pass, plan);
+            Physics physics = see(i, at, pass, plan);
             const Node node = load(at, i);
-            const Real3 change = pass.kick > 0 ? eyes.acceleration(node) : Real3(0);
-            if (pass.part > 0) store(eyes.collect(load(plan.opens ? at : total, i), node, change), total, i);
+            const Real3 change = pass.kick > 0 ? physics.acceleration(node) : Real3(0);
+            if (pass.part > 0)
+                store(physics.collect(load(plan.opens ? at : total, i), node, change), total, i);
             const Real3 was = states_[current].positions[i];
-            const Node moved = eyes.collide(eyes.integrate(load(start, i), node, change), was);
+            const Node moved = physics.collide(physics.integrate(load(start, i), node, change), was);
             store(moved, next, i);
             if (!plan.ends) continue;
             const Real3 along(pass.origin_speed);
@@ -137,7 +138,8 @@ class Reference final : public Machine {
         }
     }
 
-    At see(std::size_t i, const NodeStates<Real>& at, const Pass& pass, const PassPlan& plan = {}) const {
+    Physics see(std::size_t i, const NodeStates<Real>& at, const Pass& pass,
+                const PassPlan& plan = {}) const {
         return reference::see<Real, with_hinges>(around_, pass, at, i, plan.tips);
     }
     Node load(const NodeStates<Real>& from, std::size_t i) const {

@@ -68,7 +68,7 @@ class Feedback final : public Pipeline {
 
     gl::Program program_;
     gl::VertexArray nodes_;
-    gl::Framebuffer nothing_;  // nobody draws into it, but where none is whole no draw is allowed
+    gl::Framebuffer nothing_;  // never drawn into; but without a complete framebuffer no draw is allowed
     gl::Handle<TransformFeedbackKind> captured_;
     bool sums_;
     GLsizei slots_;

@@ -96,13 +96,13 @@ bool Mouse::read(double now, DeviceState& state) noexcept {
 
 // Sets the target of the hand at that time; or places the hand there, if it had no place before or the camera
 // has moved.
-void Mouse::take(const Input& input, double time, double now, bool anew) {
+void Mouse::take(const Input& input, double time, double now, bool placed) {
     advance(std::clamp(time, time_, now));
     const dvec3 from = target_;
     input_ = input;
     target_ = place();
     swing_.offset += from - target_;
-    if (anew) {
+    if (placed) {
         swing_ = {};
         ++placed_;
     }

@@ -64,7 +64,7 @@ class Mouse final : public Device {
         unsigned events = 0, placings = 0;
     };
 
-    void take(const Input& input, double time, double now, bool anew);
+    void take(const Input& input, double time, double now, bool placed);
     void advance(double time);
     dvec3 place() const;
 

@@ -1,4 +1,4 @@
-#include "palpate/solver/cpu/laid_body.h"
+#include "palpate/solver/cpu/body_memory.h"
 
 #include "palpate/body/grid.h"
 #include "palpate/body/stencils.h"
@@ -86,11 +86,11 @@ Layout layout_for(const Body& body, Springs springs, int lanes) {
 
 }  // namespace
 
-LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes)
-    : LaidBody(body, simulation, lanes, springs_of(body)) {}
+BodyMemory::BodyMemory(const Body& body, const Simulation& simulation, int lanes)
+    : BodyMemory(body, simulation, lanes, springs_of(body)) {}
 
-LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
-                   const std::pair<Springs, std::vector<vec3>>& springs)
+BodyMemory::BodyMemory(const Body& body, const Simulation& simulation, int lanes,
+                       const std::pair<Springs, std::vector<vec3>>& springs)
     : layout_(layout_for(body, springs.first, lanes)),
       damped_(body.link_damping > 0),
       corners_(polygon_corners(simulation)),
@@ -110,7 +110,7 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
             view_.hinges = hinges_->view();
         }
     } else {
-        lay_grid(body);
+        write_grid(body);
     }
     bound_blocks(body);
     view_.runs = layout_.runs.data();
@@ -129,7 +129,7 @@ LaidBody::LaidBody(const Body& body, const Simulation& simulation, int lanes,
     view_.fields = fields_.data();
 }
 
-void LaidBody::lay_grid(const Body& body) {
+void BodyMemory::write_grid(const Body& body) {
     const GridSprings& stencil = *body.grid();
     const bool quarters = in_quarters(view_.springs);
     for (int w = 0; w < (quarters ? 2 : 1); ++w) {
@@ -137,7 +137,7 @@ void LaidBody::lay_grid(const Body& body) {
         bytes_ += words_.back().bytes();
         view_.words[w] = words_.back().data();
     }
-    for (std::size_t i = 0; i < body.count(); ++i) lay_shares(body, i);
+    for (std::size_t i = 0; i < body.count(); ++i) write_shares(body, i);
     view_.whole_within = std::numeric_limits<float>::max();
     for (std::size_t l = 0; l < stencil.links.size(); ++l)
         view_.whole_within =
@@ -150,7 +150,7 @@ void LaidBody::lay_grid(const Body& body) {
     if (varies) view_.half_strength = spread(half);
 }
 
-void LaidBody::let_neighbours_see(Fields& state) {
+void BodyMemory::add_neighbour_arrays(Fields& state) {
     if (!ties_) return;
     auto four_a_slot = [&] {
         floats_.emplace_back(4 * std::size_t(layout_.slots), arrays_++);
@@ -161,7 +161,7 @@ void LaidBody::let_neighbours_see(Fields& state) {
     if (damped_) state.speeds = four_a_slot();
 }
 
-void LaidBody::lay_shares(const Body& body, std::size_t node) {
+void BodyMemory::write_shares(const Body& body, std::size_t node) {
     const GridSprings& stencil = *body.grid();
     const bool quarters = in_quarters(view_.springs);
     const std::size_t per_word = quarters ? 10 : 32;
@@ -173,13 +173,13 @@ void LaidBody::lay_shares(const Body& body, std::size_t node) {
     }
 }
 
-bool LaidBody::change(const Body& body, std::span<const int> nodes) {
+bool BodyMemory::change(const Body& body, std::span<const int> nodes) {
     if (view_.springs == Springs::table || body.terms.size() != 1) return false;
     if (!in_quarters(view_.springs) && !whole(*body.grid())) return false;
     for (int node : nodes) {
         const auto i = std::size_t(node);
         const int slot = layout_.slot[i];
-        lay_shares(body, i);
+        write_shares(body, i);
         inverse_mass_[slot] = body.inverse_mass[i];
         area_[slot] = body.area[i];
         cover_[slot] = body.cover[i];
@@ -190,7 +190,7 @@ bool LaidBody::change(const Body& body, std::span<const int> nodes) {
     return true;
 }
 
-void LaidBody::bound_blocks(const Body& body) {
+void BodyMemory::bound_blocks(const Body& body) {
     rest_bounds_.assign(layout_.blocks.size(), {});
     furthest_cover_.assign(layout_.blocks.size(), 0);
     for (std::size_t i = 0; i < body.count(); ++i) {
@@ -203,13 +203,13 @@ void LaidBody::bound_blocks(const Body& body) {
     }
 }
 
-float* LaidBody::keep() {
+float* BodyMemory::keep() {
     floats_.push_back(array());
     bytes_ += floats_.back().bytes();
     return floats_.back().data();
 }
 
-float* LaidBody::spread(const std::vector<float>& of_nodes) {
+float* BodyMemory::spread(const std::vector<float>& of_nodes) {
     float* to = keep();
     for (std::size_t i = 0; i < of_nodes.size(); ++i) to[layout_.slot[i]] = of_nodes[i];
     return to;

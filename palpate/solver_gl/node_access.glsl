@@ -1,4 +1,4 @@
-// eyes.glsl: what node.inl asks of a backend, for a node in the GPU's memory. After pass.inl.
+// node_access.glsl: what node.inl asks of a backend, for a node in the GPU's memory. After pass.inl.
 
 layout(std140, binding = pass_block) uniform Uniforms { Pass pass; };
 
