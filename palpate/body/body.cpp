@@ -35,6 +35,20 @@ bool is_compact(std::span<const ivec3> places) {
     return true;
 }
 
+// Whether all cells at rest are cubes of the body's spacing, within what rounding makes of them.
+bool has_cubes(const Body& body) {
+    const double hair = 1e-3 * body.spacing;
+    return std::ranges::all_of(body.cells, [&](const std::array<int, 8>& nodes) {
+        const dmat3 edges = edges_of(nodes, body.positions);
+        bool is_cube = glm::determinant(edges) > 0;
+        for (int k = 0; k < 3; ++k) {
+            is_cube = is_cube && std::abs(glm::length(edges[k]) - body.spacing) <= hair;
+            is_cube = is_cube && std::abs(glm::dot(edges[k], edges[(k + 1) % 3])) <= hair * body.spacing;
+        }
+        return is_cube;
+    });
+}
+
 void check_count(const Body& body, std::size_t positions) {
     if (positions < body.count())
         throw Error(fmt::format("{} positions of {} nodes", positions, body.count()), name_in_errors(body),
@@ -92,8 +106,8 @@ void check(const Body& body) {
                     has(spring.a) && has(spring.b) && is_some(spring.stiffness) && is_some(spring.rest),
                     "a spring to a node that it does not have, or whose numbers are negative or not finite",
                     "count nodes from 0");
-        } else {
-            for (const Hinge& hinge : std::get<Bending>(term).hinges) {
+        } else if (const auto* bending = std::get_if<Bending>(&term)) {
+            for (const Hinge& hinge : bending->hinges) {
                 std::array nodes{hinge.from, hinge.to, hinge.left, hinge.right};
                 std::ranges::sort(nodes);
                 require(std::ranges::all_of(nodes, has) && std::ranges::adjacent_find(nodes) == nodes.end() &&
@@ -117,6 +131,17 @@ void check(const Body& body) {
     for (const auto& cell : body.cells)
         require(std::ranges::all_of(cell, has), "a cell of a node that it does not have",
                 "count nodes from 0");
+    if (const TissueCells* cells = tissue_of(body)) {
+        require(cells->youngs_modulus > 0 && std::isfinite(cells->youngs_modulus),
+                "tissue without a Young's modulus above zero", "give it in Pa");
+        require(cells->poisson >= 0 && cells->poisson <= 0.499f,
+                "a Poisson's ratio that is not from 0 to 0.499", "organs have 0.45 to 0.49");
+        require(cells->weights.size() == body.cells.size() &&
+                    std::ranges::all_of(cells->weights, [&](float w) { return w > 0 && is_some(w); }),
+                "tissue without a weight above zero for each cell", "1 is a whole cell");
+        require(body.grid() && has_cubes(body), "tissue in cells that are not cubes at rest",
+                "make it of a lattice");
+    }
     for (const auto& face : body.faces)
         require(std::ranges::all_of(face, has), "a face of a node that it does not have",
                 "count nodes from 0");
@@ -152,7 +177,9 @@ void add_ties(const Body&, const ListedSprings& listed, std::vector<std::vector<
     }
 }
 
-void add_ties(const Body&, const Bending&, std::vector<std::vector<Tie>>&) {}  // no springs
+// These have no springs.
+void add_ties(const Body&, const Bending&, std::vector<std::vector<Tie>>&) {}
+void add_ties(const Body&, const TissueCells&, std::vector<std::vector<Tie>>&) {}
 
 // The neighbours round a node come first, each with the first spring to it, if there is one.
 std::vector<Tie> in_a_ring(const Body& body, std::size_t node, std::vector<Tie> ties) {
@@ -228,6 +255,21 @@ std::vector<std::vector<OwnHinge>> own_hinges(const Body& body) {
         }
     }
     return lists;
+}
+
+const TissueCells* tissue_of(const Body& body) {
+    for (const Term& term : body.terms)
+        if (const auto* cells = std::get_if<TissueCells>(&term)) return cells;
+    return nullptr;
+}
+
+std::vector<OwnCells> own_cells(const Body& body) {
+    OwnCells none;
+    none.fill(-1);
+    std::vector<OwnCells> own(body.count(), none);
+    for (std::size_t c = 0; c < body.cells.size(); ++c)
+        for (std::size_t k = 0; k < 8; ++k) own[std::size_t(body.cells[c][k])][k] = int(c);
+    return own;
 }
 
 Body without_grid(Body body) {

@@ -78,8 +78,25 @@ struct Bending {
     bool operator==(const Bending&) const = default;
 };
 
+/// The cells of a grid, Body::cells, as pieces of a neo-Hookean solid (solver/terms/cells.inl): of any
+/// Poisson's ratio, and a cell that is turned inside out turns back. At rest they are cubes. The springs of
+/// the grid stand before it and say which nodes are neighbours; where there is nothing but tissue, their
+/// stiffness is 0.
+struct TissueCells {
+    float youngs_modulus;  // Pa
+    float poisson;  // Poisson's ratio, from 0 to below 1/2; tissue that keeps its volume has 0.45 to 0.49
+    /// One a cell: how much of it is filled, times how much stiffer it is than the rest.
+    std::vector<float> weights;
+
+    /// Lamé's parameters, Pa.
+    float shear() const { return youngs_modulus / (2 * (1 + poisson)); }
+    float lame() const { return 2 * shear() * poisson / (1 - 2 * poisson); }
+
+    bool operator==(const TissueCells&) const = default;
+};
+
 /// What pulls at nodes: a kind of force with its numbers. Its equations are in solver/terms/.
-using Term = std::variant<GridSprings, ListedSprings, Bending>;
+using Term = std::variant<GridSprings, ListedSprings, Bending, TissueCells>;
 
 /// Nodes, and what pulls at them. Plain data; the moving state belongs to a Solver.
 /// In a grid, nodes stand in its order, x fastest, with no gaps: nodes that do not exist take no memory.
@@ -142,6 +159,9 @@ struct OwnHinge {
     float area_square;          // m⁴, of the smaller of its triangles at rest; never quite 0
 };
 
+/// The cells around a node of tissue: -1, or the number of the cell of which it is corner k.
+using OwnCells = std::array<int, 8>;
+
 /// What messages call it.
 std::string name_in_errors(const Body& body);
 
@@ -157,7 +177,13 @@ bool has_hinges(const Body& body);
 /// The hinges of a body as its nodes see them: for each node all that it belongs to.
 std::vector<std::vector<OwnHinge>> own_hinges(const Body& body);
 
-/// The same body with its springs listed one by one, and no grid or cells any more.
+/// The tissue of a body; null where it has none.
+const TissueCells* tissue_of(const Body& body);
+
+/// The cells of a body as its nodes see them.
+std::vector<OwnCells> own_cells(const Body& body);
+
+/// The same body with its springs listed one by one, and no grid or cells any more: without its tissue.
 Body without_grid(Body body);
 
 /// The springs of any body, each once: pairs of nodes.

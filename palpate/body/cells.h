@@ -10,6 +10,7 @@ namespace palpate {
 struct Cells {
     ivec3 dims = ivec3(0);
     std::vector<std::uint8_t> filled;
+    std::vector<float> parts = {};  // of each cell, how much is inside the solid; empty: all of it
 
     std::size_t index(ivec3 c) const { return (std::size_t(c.z) * dims.y + c.y) * dims.x + c.x; }
     bool at(ivec3 c) const {

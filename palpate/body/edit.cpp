@@ -169,8 +169,8 @@ void keep_nodes(Body& body, const std::vector<int>& kept) {
             keep(grid->strength, kept);
         } else if (auto* listed = std::get_if<ListedSprings>(&term)) {
             for (Spring& s : listed->springs) s.a = number[std::size_t(s.a)], s.b = number[std::size_t(s.b)];
-        } else {
-            std::erase_if(std::get<Bending>(term).hinges, [&](Hinge& hinge) {
+        } else if (auto* bending = std::get_if<Bending>(&term)) {
+            std::erase_if(bending->hinges, [&](Hinge& hinge) {
                 bool is_whole = true;
                 for (int* node : {&hinge.from, &hinge.to, &hinge.left, &hinge.right})
                     is_whole = (*node = number[std::size_t(*node)]) >= 0 && is_whole;
@@ -209,6 +209,8 @@ BodyChange apply(Body& body, const Edit& edit) {
         for (int c = 0; c < int(body.cells.size()); ++c)
             if (!gone.contains(c)) change.cell_before.push_back(c);
         keep(body.cells, change.cell_before);
+        for (Term& term : body.terms)
+            if (auto* tissue = std::get_if<TissueCells>(&term)) keep(tissue->weights, change.cell_before);
         touched.merge(cutting.cut_hinges());
     }
     const std::vector<int> cells_now = count_cells(body);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace palpate {
@@ -22,9 +23,12 @@ Link link_to(ivec3 offset, float stiffness, float spacing) {
     return {offset, stiffness, spacing * glm::length(vec3(offset))};
 }
 
+bool is_tissue(const Material& material) { return material.poisson != 0; }
+
 std::vector<Link> isotropic_links(const Material& material, float spacing) {
-    const float stiffness =
-        material.stiffness > 0 ? material.stiffness : 0.4f * material.youngs_modulus * spacing;
+    const float stiffness = is_tissue(material)      ? 0
+                            : material.stiffness > 0 ? material.stiffness
+                                                     : 0.4f * material.youngs_modulus * spacing;
     std::vector<Link> links;
     for (int l = 0; l < lattice_links; ++l) links.push_back(link_to(volume_links[l], stiffness, spacing));
     return links;
@@ -92,18 +96,20 @@ int quarters(const Cells& cells, ivec3 p, ivec3 offset) {
 }
 
 bool equal_links(const Material& material) {
+    if (is_tissue(material)) return false;
     return material.links == Links::equal ||
            (material.links == Links::automatic && material.youngs_modulus <= 0);
 }
 
-// Spreads the mass over the nodes: by how many of the eight cells around each are filled, or evenly.
+// Spreads the mass over the nodes: by how much of the eight cells around each is filled, or evenly.
 void weigh(Body& body, const Material& material, bool equal, double volume) {
-    std::vector<int> filled(body.count(), 0);
-    for (const std::array<int, 8>& cell : body.cells)
-        for (int node : cell) ++filled[std::size_t(node)];
+    std::vector<double> filled(body.count(), 0);
+    const TissueCells* cells = tissue_of(body);
+    for (std::size_t c = 0; c < body.cells.size(); ++c)
+        for (int node : body.cells[c]) filled[std::size_t(node)] += cells ? double(cells->weights[c]) : 1;
     std::vector<double> part(body.count(), 1);
     if (!equal)
-        for (std::size_t i = 0; i < body.count(); ++i) part[i] = std::max(filled[i], 1) / 8.0;
+        for (std::size_t i = 0; i < body.count(); ++i) part[i] = (filled[i] > 0 ? filled[i] : 1) / 8;
     double parts = 0;
     for (double p : part) parts += p;
     const double total = material.mass > 0 ? material.mass
@@ -127,11 +133,23 @@ void check_stiffness(const Material& material) {
     if (!is_one(material.youngs_modulus, material.stiffness))
         throw Error("both a Young's modulus and a stiffness above zero, or none", "the material of a lattice",
                     "give it one of them");
+    if (!(material.poisson >= 0 && material.poisson <= 0.499f) ||
+        (is_tissue(material) && !(material.youngs_modulus > 0)))
+        throw Error("a Poisson's ratio that is not from 0 to 0.499, or without a Young's modulus",
+                    "the material of a lattice", "tissue has 0.45 to 0.49; 0 makes it of springs");
 }
 void check_mass(const Material& material) {
     if (!is_one(material.density, material.mass))
         throw Error("both a density and a mass above zero, or none", "the material of a lattice",
                     "give it one of them");
+}
+
+// Of each filled cell, how much of it is.
+std::vector<float> how_full(const Cells& cells) {
+    std::vector<float> parts;
+    for (std::size_t c = 0; c < cells.filled.size(); ++c)
+        if (cells.filled[c]) parts.push_back(cells.parts.empty() ? 1 : cells.parts[c]);
+    return parts;
 }
 
 // Nodes at the grid's points, the springs between them, and the masses. `equal`: all links are whole, at the
@@ -165,6 +183,11 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
         std::array<int, 8>& nodes = body.cells.emplace_back();
         for (int k = 0; k < 8; ++k) nodes[k] = grid[c + corner(k)];
     });
+    if (is_tissue(material) && body.cells.empty())
+        throw Error("tissue without a cell", "the lattice",
+                    "use 2 nodes or more along each axis, or springs (poisson 0)");
+    if (is_tissue(material))
+        body.terms.push_back(TissueCells{material.youngs_modulus, material.poisson, how_full(cells)});
     body.inverse_mass.resize(body.count());
     weigh(body, material, equal, volume);
     spread_area(body);
@@ -268,7 +291,11 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
         Sampled sampled(frame_around(box, h), h);
         mark_inside(distance, sampled);
         mark_surface(mesh, sampled);
-        return std::pair(sampled.frame, fill(sampled.frame.dims, sampled.cells));
+        Cells cells = fill(sampled.frame.dims, sampled.cells);
+        // Less than an eighth would make a node of nearly no mass, which no contact can hold.
+        for (const Samples& samples : sampled.cells)
+            cells.parts.push_back(std::max(float(std::popcount(samples.inside)) / 64, 0.125f));
+        return std::pair(sampled.frame, std::move(cells));
     };
     auto assemble_at = [&](float h) {
         const auto [frame, cells] = fill_at(h);
@@ -302,7 +329,7 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
 bool restuff(Body& body, const Material& from, const Material& to, double volume) {
     check_stiffness(to);
     check_mass(to);
-    if (equal_links(from) != equal_links(to)) return false;
+    if (equal_links(from) != equal_links(to) || is_tissue(from) || is_tissue(to)) return false;
     GridSprings& springs = *body.grid();
     springs.links = isotropic_links(to, body.spacing);
     springs.strength.clear();

@@ -24,7 +24,7 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
 
 /// Makes the lattice of a mesh one of another material, as if it had been made of that: no node is held and
 /// no part is harder any more. `volume`: the mesh's, m³. False, and nothing changes, where that would have
-/// other links at the rim (Material::links).
+/// other links at the rim (Material::links), or is or was tissue.
 bool restuff(Body& body, const Material& from, const Material& to, double volume);
 
 /// A plain box of `dims` nodes along each axis, 1 or more, at most 30 million, node (0, 0, 0) at the origin.

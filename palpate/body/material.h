@@ -31,12 +31,15 @@ struct SpringKinds {
 
 /// What a body is made of. Give one of the first two and one of the next two; a zero says "not given".
 struct Material {
-    float youngs_modulus = 0;  // Pa; brain about 1e3 to 1e4, skin 1e5. Poisson's ratio is always 1/4
-    float stiffness = 0;       // N/m of each spring
-    float density = 0;         // kg/m³; water is 1000
-    float mass = 0;            // kg, of the whole body
-    float damping = 0;         // 1/s; free motion decays as exp(-damping · t / 2)
-    float link_damping = 0;    // s; each spring resists its stretching with this × its stiffness, N s/m
+    float youngs_modulus = 0;  // Pa; brain about 1e3 to 1e4, skin 1e5
+    /// Poisson's ratio, of tissue: its cells are pieces of a solid (TissueCells), for which a Young's modulus
+    /// has to be given. 0: of springs alone, and then it is always 1/4.
+    float poisson = 0;
+    float stiffness = 0;     // N/m of each spring
+    float density = 0;       // kg/m³; water is 1000
+    float mass = 0;          // kg, of the whole body
+    float damping = 0;       // 1/s; free motion decays as exp(-damping · t / 2)
+    float link_damping = 0;  // s; each spring resists its stretching with this × its stiffness, N s/m
     Links links = Links::automatic;
 
     bool operator==(const Material&) const = default;

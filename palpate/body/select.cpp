@@ -74,6 +74,12 @@ void strengthen(Body& body, std::span<const float> factors) {
             for (std::size_t i = 0; i < factors.size(); ++i) grid->strength[i] *= factors[i];
         } else if (auto* listed = std::get_if<ListedSprings>(&term)) {
             for (Spring& spring : listed->springs) spring.stiffness *= mean(spring.a, spring.b);
+        } else if (auto* cells = std::get_if<TissueCells>(&term)) {
+            for (std::size_t c = 0; c < cells->weights.size(); ++c) {
+                float sum = 0;
+                for (int node : body.cells[c]) sum += factors[std::size_t(node)];
+                cells->weights[c] *= std::max(sum / 8, 1e-6f);
+            }
         } else {
             for (Hinge& hinge : std::get<Bending>(term).hinges) hinge.stiffness *= mean(hinge.from, hinge.to);
         }

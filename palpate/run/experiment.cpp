@@ -28,8 +28,8 @@ bool leaves_shapes(const Change& change) {
     if (key.starts_with("collider."))  // planes and balls are drawn from their present values
         return last == "friction" || last == "margin" || key.find(".plane.") != std::string::npos ||
                key.find(".sphere.") != std::string::npos;
-    for (const char* one : {"youngs_modulus", "stiffness", "springs", "structural", "shear", "flexion",
-                            "bending", "density", "mass", "damping", "link_damping", "pin"})
+    for (const char* one : {"youngs_modulus", "poisson", "stiffness", "springs", "structural", "shear",
+                            "flexion", "bending", "density", "mass", "damping", "link_damping", "pin"})
         if (last == one) return key.starts_with("body.");
     return false;
 }
@@ -61,6 +61,8 @@ float stiffest(const Body& body) {
             for (const Link& link : grid->links) most = std::max(most, link.stiffness);
         else if (const auto* listed = std::get_if<ListedSprings>(&term))
             for (const Spring& spring : listed->springs) most = std::max(most, spring.stiffness);
+        else if (const auto* cells = std::get_if<TissueCells>(&term))  // as springs of that modulus would be
+            most = std::max(most, 0.4f * cells->youngs_modulus * body.spacing);
     return most;
 }
 

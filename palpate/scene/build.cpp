@@ -92,6 +92,7 @@ Volume read_labels(const Region& region, const BodyRecipe& recipe, const Scene& 
 // The factor of a region's stiffness over the body's.
 float factor_of(const Region& region, const Body& body) {
     if (region.factor > 0) return region.factor;
+    if (const TissueCells* cells = tissue_of(body)) return region.youngs_modulus / cells->youngs_modulus;
     const float stiffness =
         region.stiffness > 0 ? region.stiffness : 0.4f * region.youngs_modulus * body.spacing;
     return stiffness / body.grid()->links[0].stiffness;

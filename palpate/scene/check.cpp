@@ -63,6 +63,8 @@ void check(const Region& region, const BodyRecipe& body, const SceneSource& sour
     require.one_of({"youngs_modulus", "stiffness", "factor"}, "give it one");
     require("", region.factor > 0 || (!body.springs && !body.is_cloth()),
             "springs of several kinds have neither one modulus nor one stiffness", "give it a factor");
+    require("stiffness", region.stiffness == 0 || body.material.poisson == 0,
+            "a stiffness in a body of tissue", "give it youngs_modulus or a factor");
 }
 
 // The stiffness of springs: a modulus, one stiffness, or one for each kind.
@@ -78,6 +80,10 @@ void check_springs(const BodyRecipe& body, const Require& require) {
         require.one_of({"youngs_modulus", "stiffness"},
                        "give it one: brain has about 1e4 Pa, or say the N/m of each spring");
     }
+    require("poisson", body.material.youngs_modulus > 0 || !require.has("poisson"),
+            "poisson without youngs_modulus", "give the modulus too, in Pa");
+    require("links", body.material.poisson == 0 || !require.has("links"),
+            "links beside poisson, where it has no effect", "remove it");
     require("bending", body.sheet || !require.has("bending"), "bending of what is no sheet of triangles",
             "give cloth flexion springs, or use sheet = true with a surface");
     if (body.springs)

@@ -129,6 +129,8 @@ void read_surface(Reader& read, BodyRecipe& body) {
 
 void read_material(Reader& read, BodyRecipe& body) {
     read("youngs_modulus", body.material.youngs_modulus, modulus);
+    read("poisson", body.material.poisson,
+         between(0.01, 0.499, "", "organs have 0.45 to 0.49; without it the body is of springs"));
     read("stiffness", body.material.stiffness, stiffness);
     read.table("springs", [&](Reader& inside) { read_fields(inside, body.springs.emplace()); });
     read("bending", body.bending, zero_or_more("N·m", "cotton has about 1e-5 N·m").usual(1e-9, 10));

@@ -370,24 +370,33 @@ class Reader {
     }
 
     // What others call our keys.
-    static constexpr std::pair<std::string_view, const char*> other_words[] = {
-        {"mesh", "surface"},      {"file", "surface"},
-        {"model", "surface"},     {"scale", "size"},
-        {"position", "move"},     {"translate", "move"},
-        {"translation", "move"},  {"fixed", "pin"},
-        {"E", "youngs_modulus"},  {"young", "youngs_modulus"},
-        {"rho", "density"},       {"k", "stiffness"},
-        {"viscosity", "damping"}, {"fov", "angle"},
-        {"target", "look_at"},    {"dt", "step"},
-        {"g", "gravity"},         {"end", "duration"},
-        {"solver", "integrator"}};
+    static constexpr std::pair<std::string_view, const char*> other_words[] = {{"mesh", "surface"},
+                                                                               {"file", "surface"},
+                                                                               {"model", "surface"},
+                                                                               {"scale", "size"},
+                                                                               {"position", "move"},
+                                                                               {"translate", "move"},
+                                                                               {"translation", "move"},
+                                                                               {"fixed", "pin"},
+                                                                               {"E", "youngs_modulus"},
+                                                                               {"young", "youngs_modulus"},
+                                                                               {"nu", "poisson"},
+                                                                               {"poisson_ratio", "poisson"},
+                                                                               {"poissons_ratio", "poisson"},
+                                                                               {"rho", "density"},
+                                                                               {"k", "stiffness"},
+                                                                               {"viscosity", "damping"},
+                                                                               {"fov", "angle"},
+                                                                               {"target", "look_at"},
+                                                                               {"dt", "step"},
+                                                                               {"g", "gravity"},
+                                                                               {"end", "duration"},
+                                                                               {"solver", "integrator"}};
 
     // What to do about a key that is not known here.
     std::string advice(const std::string& name) const {
         for (const auto& [word, key] : other_words)
             if (name == word && known_.contains(key)) return fmt::format("did you mean \"{}\"?", key);
-        for (std::string_view ratio : {"poisson", "poissons_ratio", "poisson_ratio", "nu"})
-            if (name == ratio) return "remove it: Poisson's ratio of a lattice is always 1/4";
         if (const std::string table = table_with(name); !table.empty())
             return fmt::format("did you mean {}.{}?", table, name);
         for (const auto& [path, keys] : reading_.keys)

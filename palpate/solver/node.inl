@@ -7,7 +7,7 @@
 //   Real, Real3        a number, a vector: of one node, or of as many nodes as a SIMD register holds
 //   select(c, a, b)    a where c holds, b elsewhere
 //   any_node(c)        whether c holds for any of the nodes at hand
-//   LINKS, HINGES      how many links and hinges a node has
+//   LINKS, HINGES, CELLS   how many links and hinges a node has; 8 cells around it in a body of tissue, else 0
 //   pass               the Pass: what all nodes share
 //   toward(p, l)       from p to this node's neighbour along link l, m
 //   passing(v, l)      from v to that neighbour's velocity, m/s
@@ -18,6 +18,8 @@
 //   hinge_end(h)       whether this node is an end of the edge of its hinge h; else it is the tip of a triangle
 //   hinge_toward(p, h, n), hinge_passing(v, h, n)   as toward and passing, for the three others: OwnHinge says which
 //   hinge_stiffness(h), hinge_rest(h), hinge_area_square(h)   as an OwnHinge says
+//   cell_weight(k)     of the cell of which this node is corner k, 0 where there is none
+//   cell_corner(p, k, c), cell_corner_passing(v, k, c)   as toward and passing, for its corner c
 //   origin()           what this node's position counts from: the world's, or its own place at rest, m
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
 //   tip(i)             the RoundTip i
@@ -25,10 +27,14 @@
 //   corner(i)          corner i of all polygons, m
 //   distance_at(i, p), uphill_at(i, p)   field i at p: the distance, m, and which way it grows
 // These, and loading and storing nodes, are all that a backend writes itself. It may also define OWN_PULL and bring the
-// same pull(l, square) in another form, if it has the pieces of the sum at hand. And what it knows of a pass beforehand it
-// may define in place of these, so that a compiler leaves out what never acts:
+// same pull(l, square) in another form, if it has the pieces of the sum at hand; and OWN_CELLS and bring
+// cells_force(node), if it works out damped_cell_forces() once for each cell. And what it knows of a pass when it is compiled
+// it may define in place of these, so that what never acts is left out (SPRINGS: how many of the links pull):
 #ifndef FAN
 #define FAN pass.fan
+#endif
+#ifndef SPRINGS
+#define SPRINGS LINKS
 #endif
 #ifndef TIPS
 #define TIPS pass.tips
@@ -84,8 +90,10 @@ ASIDE Real3 outward(Real3 position) {
 
 #include "palpate/solver/terms/springs.inl"
 #include "palpate/solver/terms/bending.inl"
+#include "palpate/solver/terms/cells.inl"
 
-// All terms together. A law that joins them is one more file, and one more line in each of these.
+// All terms together, but for what cells of tissue do: that is worked out by cells, damping included, and added where it is
+// asked for. A law that joins them is one more file, and one more line in each of these.
 
 FN Real3 elastic_force(Real3 position) {
     Real3 force = spring_force(position);
@@ -108,17 +116,24 @@ ASIDE Real3 elastic_stiffness_times(Node node) {
 ASIDE Real elastic_energy(Real3 position) {
     Real energy = spring_energy(position);
     if (HINGES > 0) energy += bending_energy(position);
+    if (CELLS > 0) energy += own_cell_energy(position);
     return energy;
 }
 
-// A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
+// A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries. Inside tissue it
+// pushes the nodes that it reaches too, or it would fall through once it is some cells deep: in proportion to their volume,
+// so that what is felt does not depend on how fine the cells are.
 FN Real3 tip_force(Real3 position, int i) {
     RoundTip t = tip(i);
     Real3 away = origin() + position - xyz(t.place);
     Real square = squared(away);
     Real inverse = inversesqrt(square);
-    Real depth = max(Real(t.place.w) + cover() - square * inverse, Real(0.0f));
-    return (Real(t.push.x) * area() * depth * inverse) * away;
+    Real part = min(Real(pass.cell_size) / Real(t.place.w), Real(1.0f));
+    Real inner = part * Real(pass.cell_size * pass.cell_size);
+    Real pushed = select(area() > Real(0.0f), area(), inner);
+    Real out = select(area() > Real(0.0f), cover(), Real(0.0f));
+    Real depth = max(Real(t.place.w) + out - square * inverse, Real(0.0f));
+    return (Real(t.push.x) * pushed * depth * inverse) * away;
 }
 
 FN Real3 push_force(Real3 position) {
@@ -145,6 +160,7 @@ FN Real3 tool_force(Real3 position) {
 FN Real3 acceleration(Node node) {
     Real3 force = elastic_force(node.position);
     if (LINK_DAMPING) force += elastic_damping(node);
+    if (CELLS > 0) force += cells_force(node);
     if (TIPS + PUSHES > 0) force += tool_force(node.position);
     if (WIND) force += wind_force(node);
     return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;
@@ -170,7 +186,9 @@ FN Node collect(Node sum, Node now, Real3 change) {
     return sum;
 }
 
-// How many things are wrong with a node: its place is no number, or a spring is torn.
+// How many things are wrong with a node: its place is not a number, or a spring or a cell is torn.
 ASIDE Real torn(Real3 position) {
-    return select(dot(position, position) <= Real(1e30f), Real(0.0f), Real(1.0f)) + torn_springs(position);
+    Real wrong = select(dot(position, position) <= Real(1e30f), Real(0.0f), Real(1.0f)) + torn_springs(position);
+    if (CELLS > 0) wrong += own_cell_torn(position);
+    return wrong;
 }

@@ -75,6 +75,13 @@ Pass make_pass(const Body& body, const Simulation& simulation, const Origin& ori
             pass.spring[l] = {link.stiffness, link.stiffness * link.rest, torn_at(link.rest, body), 0};
         }
     }
+    if (const TissueCells* cells = tissue_of(body)) {
+        pass.shear = cells->shear();
+        pass.lame = cells->lame();
+        pass.cell_size = body.spacing;
+        pass.bend = cells->youngs_modulus * body.spacing / 48;
+        pass.twist = cells->shear() * body.spacing / 16;
+    }
     return pass;
 }
 

@@ -46,7 +46,11 @@ struct Pass {
     int   last;        // 1 in the last pass of a step, 2 in that of a call, else 0
     float time;        // s, from the start of the call to where forces are taken
     int   only_shifts;   // 1: nothing moves, but places and velocities are counted from another origin
-    float padding;
+    float shear;       // of tissue, Pa: Lamé's parameters
+    float lame;
+    float cell_size;   // m
+    float bend;        // N/m: how its cells resist being bent
+    float twist;       // and twisted
     vec4  origin_speed;  // m/s, at which the origin of places goes on, and from which velocities are counted
     vec4  place_shift;   // m, that places lose where a pass only shifts,
     vec4  speed_shift;   // and m/s, that velocities do

@@ -92,6 +92,22 @@ void add_hinges(std::vector<vec4>& ties, const std::vector<std::vector<OwnHinge>
             }
 }
 
+void add_cells(std::vector<vec4>& ties, const Body& body) {
+    const TissueCells* cells = tissue_of(body);
+    if (!cells) return;
+    auto four = [](const std::array<int, 8>& all, int first, int add) {
+        vec4 some;
+        for (int k = 0; k < 4; ++k) some[k] = std::bit_cast<float>(all[std::size_t(first + k)] + add);
+        return some;
+    };
+    const std::vector<OwnCells> own = own_cells(body);
+    for (int first : {0, 4})
+        for (const OwnCells& of_node : own) ties.push_back(four(of_node, first, 1));
+    for (std::size_t c = 0; c < body.cells.size(); ++c)
+        ties.insert(ties.end(),
+                    {four(body.cells[c], 0, 0), four(body.cells[c], 4, 0), vec4(cells->weights[c], 0, 0, 0)});
+}
+
 // Springs written out, those of each link together, so that neighbouring nodes read side by side.
 gl::Field ties_of(const Body& body, const Placement& placement) {
     if (placement.grid) {
@@ -109,6 +125,7 @@ gl::Field ties_of(const Body& body, const Placement& placement) {
             ties.emplace_back(std::bit_cast<float>(to), tie.share, tie.stiffness, tie.rest);
         }
     add_hinges(ties, own_hinges(body));
+    add_cells(ties, body);
     return field(GL_RGBA32F, ties);
 }
 
@@ -178,6 +195,8 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     const Pass pass = make_pass(body, simulation);
     define(true, fmt::format("LINKS {}", stencil ? pass.links : table(body).width));
     define(true, fmt::format("HINGES {}", stencil ? 0 : most_hinges(own_hinges(body))));
+    define(true, fmt::format("CELLS {}", tissue_of(body) ? 8 : 0));
+    define(tissue_of(body) && spring_ends(body).empty(), "SPRINGS 0");
     define(!stencil, "TABLE");
     define(stencil && stencil->in_quarters(), "QUARTERS");
     define(stencil && !stencil->strength.empty(), "STRENGTH");

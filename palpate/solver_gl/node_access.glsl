@@ -5,7 +5,7 @@ layout(std140, binding = pass_block) uniform Uniforms { Pass pass; };
 layout(binding = positions_unit) uniform Floats positions;   // m; w: 1/kg, below 0 where there is no node
 layout(binding = velocities_unit) uniform Floats velocities;  // m/s; w: number of a guide, below 0 for none
 layout(binding = traits_unit) uniform usamplerBuffer traits;   // of a slot: two words of shares; area and cover, as floats' bits
-layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; behind them of hinges; or strengths
+layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; behind them hinges and cells; or strengths
 layout(binding = guides_unit) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
 layout(binding = corners_unit) uniform samplerBuffer corners;   // of polygons
 layout(binding = distances_unit) uniform samplerBuffer distances; // of fields, one after the other
@@ -76,6 +76,15 @@ vec3 hinge_passing(vec3 v, int h, int n) { return velocity_of(at(velocities, hin
 float hinge_stiffness(int h) { return hinge_part(h, 1).x; }
 float hinge_rest(int h) { return hinge_part(h, 1).y; }
 float hinge_area_square(int h) { return hinge_part(h, 1).z; }
+
+// Behind the hinges: of each node the numbers of its eight cells from 1 on, 0 for none, in two parts; then of each cell the slots of its corners, in
+// two parts, and its weight.
+int cell(int k) { return floatBitsToInt(texelFetch(ties, (LINKS + 2 * HINGES + (k >> 2)) * SLOTS + id)[k & 3]) - 1; }
+vec4 cell_part(int k, int part) { return texelFetch(ties, (LINKS + 2 * HINGES + 2) * SLOTS + 3 * cell(k) + part); }
+int cell_slot(int k, int c) { return floatBitsToInt(cell_part(k, c >> 2)[c & 3]); }
+float cell_weight(int k) { return cell(k) < 0 ? 0 : cell_part(k, 2).x; }
+vec3 cell_corner(vec3 p, int k, int c) { return cell(k) < 0 ? vec3(0) : at(positions, cell_slot(k, c)).xyz - p; }
+vec3 cell_corner_passing(vec3 v, int k, int c) { return cell(k) < 0 ? vec3(0) : velocity_of(at(velocities, cell_slot(k, c))) - v; }
 
 vec3 origin() { return vec3(0); }
 float area() { return uintBitsToFloat(trait.z); }

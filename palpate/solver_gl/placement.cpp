@@ -35,7 +35,7 @@ Placement::Placement(const Body& body) {
         write_grid(body);
     }
     for (std::size_t i = 0; i < body.count(); ++i)
-        if (body.area[i] > 0) rim.push_back(slot[i]);
+        if (body.area[i] > 0 || tissue_of(body)) rim.push_back(slot[i]);
 }
 
 void Placement::write_grid(const Body& body) {

@@ -18,7 +18,7 @@ struct Placement {
     std::vector<int> offsets;  // in slots, along each link of a grid
     int slots = 0;             // with the room on both sides
     std::vector<int> slot;     // of each node
-    std::vector<int> rim;      // the slots of the nodes of the outside, which alone tips touch
+    std::vector<int> rim;      // the slots of the nodes that tips touch: of the outside, and of all tissue
 
  private:
     void write_grid(const Body& body);

@@ -288,6 +288,9 @@ void Controls::show_body(Viewer& viewer, std::size_t b) {
             change(key, number(value));
     };
     amount("Young's mod.", "youngs_modulus", material.youngs_modulus, "%.3g Pa");
+    if (float ratio = material.poisson;
+        ratio > 0 && sliders_.slide_and_let_go("Poisson's ratio", ratio, 0.01f, 0.499f, "%.3f"))
+        change("poisson", number(ratio));
     amount("stiffness", "stiffness", material.stiffness, "%.3g N/m");
     if (recipe.springs) {
         amount("structural", "springs.structural", recipe.springs->structural, "%.3g N/m");

@@ -211,7 +211,8 @@ TEST(Scene, OfSeveralKeysOne) {
 }
 
 TEST(Scene, KeysThatBelongElsewhere) {
-    expect_words(refusal(small + "poisson = 0.45\n"), {"\"poisson\" of body.cube", "line 8", "always 1/4"});
+    expect_words(refusal(small + "nu = 0.45\n"), {"\"nu\" of body.cube", "line 8", "did you mean \"poisson\"?"});
+    expect_words(refusal(small + "poisson = 0.5\n"), {"poisson", "line 8", "0.45 to 0.49"});
     expect_words(refusal("[simulation]\n" + small + "gravity = [0, 0, 0]\n"),
                  {"did you mean simulation.gravity?"});
     expect_words(refusal(small + "[[collider]]\nplane = {}\nradius = 1\n"), {"radius", "of collider.1"});

@@ -152,8 +152,8 @@ INSTANTIATE_TEST_SUITE_P(Every, Changes,
 
 TEST_P(Changes, KeepTheStateToTheBit) {
     for (const bool with_cells : {false, true})
-        for (const Body& body :
-             {organ(), lattice({6, 5, 7}, 0.01f, tissue), without_grid(organ()), stiff_sheet()}) {
+        for (const Body& body : {organ(), lattice({6, 5, 7}, 0.01f, tissue), without_grid(organ()),
+                                 stiff_sheet(), lattice({6, 5, 7}, 0.01f, solid)}) {
             const Simulation how{.backend = GetParam(), .step = 2e-4, .force = true};
             auto swinging = make_solver(body, how, context());
             swinging->step(0.01);

@@ -49,11 +49,14 @@ std::vector<std::pair<std::string, Body>> bodies() {
     std::vector<float> factors(nodule.count(), 1);
     for (int node : nodes_near(nodule, vec3(0.015f), 0.011f)) factors[std::size_t(node)] = 5;
     strengthen(nodule, factors);
+    Material solid = tissue;
+    solid.poisson = 0.45f;
     return {
         {"lattice", lattice({4, 3, 5}, 0.01f, tissue)},
         {"lattice of a mesh",
          lattice(ellipsoid({0.02f, 0.025f, 0.03f}, 12), {.nodes = 60, .material = tissue})},
         {"lattice with a hard part", nodule},
+        {"solid", lattice({4, 5, 3}, 0.01f, solid)},
         {"volume of 2012", lattice({4, 4, 3}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.05f, .damping = 40})},
         {"cloth", cloth({7, 8}, 0.01f, linen)},
         {"cloth of triangles", cloth(disc(), linen)},

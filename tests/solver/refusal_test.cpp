@@ -114,6 +114,17 @@ TEST(Refusal, OfBodiesThatDoNotHold) {
     Body bending_sheet = sheet;
     bending_sheet.terms.push_back(bending(sheet, 1));
     auto hinges = [](Body& b) -> std::vector<Hinge>& { return std::get<Bending>(b.terms[1]).hinges; };
+    auto cells = [](Body& b) -> TissueCells& { return std::get<TissueCells>(b.terms[1]); };
+    const Body organ = lattice({3, 4, 3}, 0.01f, {.youngs_modulus = 2000, .poisson = 0.45f, .density = 1000});
+    refused("without a Young's modulus", organ, [&](Body& b) { cells(b).youngs_modulus = 0; });
+    refused("a Poisson's ratio", organ, [&](Body& b) { cells(b).poisson = 0.5f; });
+    refused("a Poisson's ratio", organ, [&](Body& b) { cells(b).poisson = none; });
+    refused("a weight above zero for each cell", organ, [&](Body& b) { cells(b).weights.pop_back(); });
+    refused("a weight above zero for each cell", organ, [&](Body& b) { cells(b).weights[2] = 0; });
+    refused("not cubes at rest", organ, [&](Body& b) { b.positions[7].x += 0.004f; });
+    refused("not cubes at rest", organ, [&](Body& b) {
+        for (vec3& p : b.positions) p.z = -p.z;
+    });
     refused("a hinge whose", bending_sheet, [&](Body& b) { hinges(b)[0].from = 20; });
     refused("a hinge whose", bending_sheet, [&](Body& b) { hinges(b)[0].right = -1; });
     refused("a hinge whose", bending_sheet, [&](Body& b) { hinges(b)[0].left = hinges(b)[0].to; });

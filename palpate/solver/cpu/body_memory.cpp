@@ -4,6 +4,7 @@
 #include "palpate/body/stencils.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -55,15 +56,25 @@ bool along_axes(const Body& body, const std::vector<vec3>& links) {
     return true;
 }
 
+// Whether a grid's springs and the cells of tissue between them are all that a body has, and the springs pull
+// at nothing.
+bool is_tissue_alone(const Body& body) {
+    return body.terms.size() == 2 && body.grid() && tissue_of(body) &&
+           std::ranges::all_of(body.grid()->links, [](const Link& link) { return link.stiffness == 0; });
+}
+
 // The kernel for a body's springs, and for those of a grid its links at rest.
 std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
-    const GridSprings* stencil = body.terms.size() == 1 ? body.grid() : nullptr;
+    const bool cells = is_tissue_alone(body);
+    const GridSprings* stencil = body.terms.size() == 1 || cells ? body.grid() : nullptr;
     if (!stencil || body.count() == 0) return {Springs::table, {}};
     std::vector<vec3> links = links_at_rest(body);
     if (links.empty()) return {Springs::table, {}};
     const bool straight = along_axes(body, links), even = stencil->strength.empty();
     Springs springs = Springs::table;
-    if (follows(*stencil, std::span(volume_links).first(lattice_links)))
+    const bool is_lattice = follows(*stencil, std::span(volume_links).first(lattice_links));
+    if (cells) return {is_lattice ? Springs::tissue : Springs::table, std::move(links)};
+    if (is_lattice)
         springs = !straight         ? Springs::turned_lattice
                   : !even           ? Springs::lattice_with_strength
                   : whole(*stencil) ? Springs::lattice_whole
@@ -76,7 +87,41 @@ std::pair<Springs, std::vector<vec3>> springs_of(const Body& body) {
 
 bool in_quarters(Springs springs) {
     return springs == Springs::lattice || springs == Springs::lattice_with_strength ||
-           springs == Springs::turned_lattice;
+           springs == Springs::turned_lattice || springs == Springs::tissue;
+}
+
+// Slots, from a node back to the lowest corner of any of its cells.
+int reach_of_cells(const Layout& layout) {
+    const std::size_t links = lattice_links + 2;
+    int reach = 0;
+    for (std::size_t at = 0; at < layout.offsets.size(); at += links)
+        for (std::size_t back : {1, 3, 5, 7, 11, 15, 19}) reach = std::max(reach, -layout.offsets[at + back]);
+    return reach;
+}
+
+// The cells of a table's nodes, as a kernel's CellRecord: eight for each register of nodes. A cell that is
+// not there has the node itself at its corners, and no weight.
+Array<std::uint32_t> cell_records(const Body& body, const Layout& layout, int lanes) {
+    constexpr std::size_t numbers = 9;
+    const auto width = std::size_t(lanes);
+    Array<std::uint32_t> records(std::size_t(layout.slots) * 8 * numbers, 0);
+    const std::vector<OwnCells> cells = own_cells(body);
+    auto number = [&](std::size_t slot, std::size_t k, std::size_t n) -> std::uint32_t& {
+        return records.data()[((slot / width * 8 + k) * numbers + n) * width + slot % width];
+    };
+    for (std::size_t slot = 0; slot < std::size_t(layout.slots); ++slot)
+        for (std::size_t k = 0; k < 8; ++k)
+            for (std::size_t c = 0; c < 8; ++c) number(slot, k, c) = std::uint32_t(4 * slot);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        for (std::size_t k = 0; k < 8; ++k) {
+            const auto slot = std::size_t(layout.slot[i]);
+            if (cells[i][k] < 0) continue;
+            const auto cell = std::size_t(cells[i][k]);
+            for (std::size_t c = 0; c < 8; ++c)
+                number(slot, k, c) = std::uint32_t(4 * layout.slot[std::size_t(body.cells[cell][c])]);
+            number(slot, k, 8) = std::bit_cast<std::uint32_t>(tissue_of(body)->weights[cell]);
+        }
+    return records;
 }
 
 Layout layout_for(const Body& body, Springs springs, int lanes) {
@@ -109,9 +154,25 @@ BodyMemory::BodyMemory(const Body& body, const Simulation& simulation, int lanes
             bytes_ += hinges_->bytes();
             view_.hinges = hinges_->view();
         }
+        if (tissue_of(body)) {
+            if (!hinges_) hinges_.emplace(body, layout_, lanes);
+            view_.hinges = hinges_->view();
+            words_.push_back(cell_records(body, layout_, lanes));
+            bytes_ += words_.back().bytes();
+            view_.cells.records = words_.back().data();
+        }
     } else {
         write_grid(body);
+        if (view_.springs == Springs::tissue) {
+            cell_weights_ = keep();
+            view_.cells.weights = cell_weights_;
+            view_.cells.reach = reach_of_cells(layout_);
+            const std::vector<OwnCells> cells = own_cells(body);
+            for (std::size_t i = 0; i < body.count(); ++i) write_cells(body, cells[i], i);
+        }
     }
+    const mat3 edges = cell_edges(body);
+    for (int c = 0; c < 8; ++c) view_.cells.corners[std::size_t(c)] = edges * vec3(c & 1, c >> 1 & 1, c >> 2);
     bound_blocks(body);
     view_.runs = layout_.runs.data();
     view_.blocks = layout_.blocks.data();
@@ -119,8 +180,10 @@ BodyMemory::BodyMemory(const Body& body, const Simulation& simulation, int lanes
     view_.furthest_cover = furthest_cover_.data();
     view_.offsets = layout_.offsets.data();
     view_.inverse_mass = inverse_mass_ = spread(body.inverse_mass);
-    view_.area = area_ = spread(body.area);
-    view_.cover = cover_ = spread(body.cover);
+    // Slots without a node: no tip may find one there, as it finds the inner nodes of tissue.
+    const bool cells = tissue_of(body) != nullptr;
+    view_.area = area_ = spread(body.area, cells ? std::numeric_limits<float>::min() : 0);
+    view_.cover = cover_ = spread(body.cover, cells ? -1e9f : 0);
     float* rest[3] = {keep(), keep(), keep()};
     for (std::size_t i = 0; i < body.count(); ++i)
         for (int k = 0; k < 3; ++k) rest[k][layout_.slot[i]] = body.positions[i][k];
@@ -173,13 +236,23 @@ void BodyMemory::write_shares(const Body& body, std::size_t node) {
     }
 }
 
+void BodyMemory::write_cells(const Body& body, const OwnCells& cells, std::size_t node) {
+    const int slot = layout_.slot[node];
+    cell_weights_[slot] = cells[0] < 0 ? 0 : tissue_of(body)->weights[std::size_t(cells[0])];
+    for (unsigned k = 0; k < 8; ++k)
+        if (cells[k] >= 0) words_[1].data()[slot] |= 1u << (24 + k);
+}
+
 bool BodyMemory::change(const Body& body, std::span<const int> nodes) {
-    if (view_.springs == Springs::table || body.terms.size() != 1) return false;
+    const bool cells = view_.springs == Springs::tissue;
+    if (view_.springs == Springs::table || body.terms.size() != (cells ? 2 : 1)) return false;
     if (!in_quarters(view_.springs) && !whole(*body.grid())) return false;
+    const std::vector<OwnCells> own = cells ? own_cells(body) : std::vector<OwnCells>();
     for (int node : nodes) {
         const auto i = std::size_t(node);
         const int slot = layout_.slot[i];
         write_shares(body, i);
+        if (cells) write_cells(body, own[i], i);
         inverse_mass_[slot] = body.inverse_mass[i];
         area_[slot] = body.area[i];
         cover_[slot] = body.cover[i];
@@ -209,8 +282,9 @@ float* BodyMemory::keep() {
     return floats_.back().data();
 }
 
-float* BodyMemory::spread(const std::vector<float>& of_nodes) {
+float* BodyMemory::spread(const std::vector<float>& of_nodes, float elsewhere) {
     float* to = keep();
+    std::fill_n(to, layout_.slots, elsewhere);
     for (std::size_t i = 0; i < of_nodes.size(); ++i) to[layout_.slot[i]] = of_nodes[i];
     return to;
 }

@@ -32,8 +32,9 @@ class BodyMemory {
                const std::pair<Springs, std::vector<vec3>>& springs);
     void write_grid(const Body& body);
     void write_shares(const Body& body, std::size_t node);
+    void write_cells(const Body& body, const OwnCells& cells, std::size_t node);
     void bound_blocks(const Body& body);
-    float* spread(const std::vector<float>& of_nodes);
+    float* spread(const std::vector<float>& of_nodes, float elsewhere = 0);
     float* keep();
 
     Layout layout_;
@@ -48,7 +49,8 @@ class BodyMemory {
     std::vector<float> furthest_cover_;  // of blocks
     std::vector<vec3> corners_;
     std::vector<const DistanceField*> fields_;
-    float *inverse_mass_ = nullptr, *area_ = nullptr, *cover_ = nullptr;  // of slots, as in
+    float *inverse_mass_ = nullptr, *area_ = nullptr, *cover_ = nullptr,
+          *cell_weights_ = nullptr;  // of slots, as in
     BodyView view_{};
 };
 

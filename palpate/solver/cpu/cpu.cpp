@@ -28,6 +28,7 @@ class Cpu final : public Machine {
         for (StateBuffer where : {current, between, further})
             if (states_[where].x) memory_.add_neighbour_arrays(states_[where]);
         share_out();
+        make_room_for_cells();
     }
 
     bool change(std::span<const int> nodes) override { return memory_.change(body_, nodes); }
@@ -79,7 +80,7 @@ class Cpu final : public Machine {
             brought_up.*f = arrays.back().data();
         });
         const Fields states[] = {states_[current], brought_up, {}, {}};
-        const Task task{memory_.view(), pass, at_now, states, {}};
+        const Task task{memory_.view(), pass, at_now, states, {}, nullptr, ring_of(0)};
         Largest none;
         kernels_.show(task, 0, all_blocks());
         kernels_.pass(task, 0, all_blocks(), none);
@@ -137,6 +138,17 @@ class Cpu final : public Machine {
             parts_.push_back(int(blocks * std::size_t(member) / std::size_t(team_.members())));
         for (std::vector<Bounds>& bounds : moved_) bounds.resize(blocks);
     }
+    // A ring for each member of the team.
+    void make_room_for_cells() {
+        if (!memory_.view().cells.weights) return;
+        const int lanes = kernels_.lanes, needed = memory_.view().cells.reach + Block::most + lanes;
+        const int size = (needed + lanes - 1) / lanes * lanes;
+        for (int member = 0; member < team_.members(); ++member) {
+            arrays_.emplace_back(std::size_t(24 * (size + kernels_.lanes)), member);
+            rings_.push_back({arrays_.back().data(), size});
+        }
+    }
+    CellRing ring_of(int member) const { return rings_.empty() ? CellRing{} : rings_[std::size_t(member)]; }
     int all_blocks() const { return int(memory_.layout().blocks.size()); }
     void copy(const Fields& from, const Fields& to) const {
         const std::size_t bytes = std::size_t(memory_.layout().slots) * sizeof(float);
@@ -172,7 +184,7 @@ class Cpu final : public Machine {
             }
             if (touched) kernels_.find_bounds(begin, first, end);
             call.for_each_pass([&](const Pass& pass, const PassPlan& plan) {
-                const Task task{memory_.view(), pass, plan, states, moved, &pushing};
+                const Task task{memory_.view(), pass, plan, states, moved, &pushing, ring_of(member)};
                 aim(pushing, mine, pass.time);
                 if (plan.impulse > 0) {
                     if (pass.tips > 0) kernels_.give(task, first, end, given_.data());
@@ -299,6 +311,7 @@ class Cpu final : public Machine {
     std::vector<Bounds> moved_[4];      // of each state and block
     std::vector<dvec3> given_;          // by tips, of each block
     std::vector<Array<float>> push_arrays_;
+    std::vector<CellRing> rings_;  // of the team's members
 };
 
 }  // namespace

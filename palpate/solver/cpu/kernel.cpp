@@ -120,13 +120,14 @@ struct NodeAccess {
     }
 };
 
-// The links of a stencil, known when this is compiled.
-template <int links, int furthest, const auto& offsets>
+// The links of a stencil, known when this is compiled. `all`: offsets a run has.
+template <int links, int furthest, const auto& offsets, int all = links>
 struct Stencil {
-    static constexpr int count = links, reach = furthest;
+    static constexpr int count = links, reach = furthest, stride = all;
     static constexpr int along(int l, int axis) { return offsets[std::size_t(l)][axis]; }
 };
 using LatticeStencil = Stencil<lattice_links, 1, volume_links>;
+using TissueStencil = Stencil<lattice_links, 1, volume_links, lattice_links + 2>;
 using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
 using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
@@ -141,11 +142,17 @@ using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
         NodeAccess<P>::of_nodes;                                                                            \
     using typename NodeAccess<P>::Real, typename NodeAccess<P>::Real3;
 
+// Which link of the tissue's stencil leads from a cell's lowest corner to its others, and from those back.
+constexpr int to_corner[] = {-1, 0, 2, 6, 4, 10, 14, 18}, from_corner[] = {-1, 1, 3, 7, 5, 11, 15, 19};
+
 // Nodes of a grid: their neighbours along a link are as far away for all of them.
-template <class Links, int bits_per_link, bool along_axes, bool with_strength, class AnyPass = Pass>
+template <class Links, int bits_per_link, bool along_axes, bool with_strength, bool with_cells = false,
+          class AnyPass = Pass>
 struct GridPhysics : NodeAccess<AnyPass> {
     using WithPass = AnyPass;
-    using Quiet = GridPhysics<Links, bits_per_link, along_axes, with_strength, QuietPass>;
+    using Quiet = GridPhysics<Links, bits_per_link, along_axes, with_strength, with_cells, QuietPass>;
+    static constexpr bool has_cells = with_cells;
+    struct Eight;
     USE_NODE_ACCESS(AnyPass)
     static constexpr int per_word = bits_per_link == 1 ? 32 : 10;
     static constexpr int words = (Links::count + per_word - 1) / per_word;
@@ -179,7 +186,7 @@ struct GridPhysics : NodeAccess<AnyPass> {
                    std::ptrdiff_t slot)
         : NodeAccess<AnyPass>{s.body, p, s, from, slot},
           constants(c),
-          offsets(s.body.offsets + run * Links::count),
+          offsets(s.body.offsets + run * Links::stride),
           x(from.x + slot),
           y(from.y + slot),
           z(from.z + slot) {
@@ -240,8 +247,43 @@ struct GridPhysics : NodeAccess<AnyPass> {
         return times_share(l, stronger(l, constants.stiffness[l] - e * tension));
     }
 
+    // Of cells whose lowest corners these are.
+    FN Pack3 cell_corner(Pack3 p, int, int c) const {
+        if (c == 0) return Pack3(0.0f, 0.0f, 0.0f);
+        const vec3 way = body.cells.corners[std::size_t(c)];
+        return load(x, y, z, offsets[to_corner[c]]) - p + Pack3(way.x, way.y, way.z);
+    }
+    FN Pack3 cell_corner_passing(Pack3 v, int, int c) const {
+        if (c == 0) return Pack3(0.0f, 0.0f, 0.0f);
+        return load(at.vx, at.vy, at.vz, id + offsets[to_corner[c]]) - v;
+    }
+    FN Pack cell_weight(int) const { return load(body.cells.weights + id); }
+
+    // What the cells around have been found to do, where there are some.
+    template <class OfNode>
+    FN Pack3 cells_force(const OfNode&) const {
+        const std::ptrdiff_t size = task.cells.size, array = size + std::ptrdiff_t(lanes());
+        const std::ptrdiff_t here = std::uint32_t(id) % std::uint32_t(size);
+        Pack3 force(0.0f, 0.0f, 0.0f);
+        _Pragma("GCC unroll 8") for (int k = 0; k < 8; ++k) {
+            std::ptrdiff_t place = here + (k > 0 ? offsets[from_corner[k]] : 0);
+            if (place < 0) place += size;
+            const float* const pushes = task.cells.numbers + 3 * k * array + place;
+            const Word bit = hn::Set(hn::RebindToUnsigned<Lanes>(), std::uint32_t(1) << (24 + k));
+            const Mask there = hn::RebindMask(Lanes(), hn::Eq(hn::And(word[1], bit), bit));
+            force +=
+                {hn::IfThenElseZero(there, load(pushes).v), hn::IfThenElseZero(there, load(pushes + array).v),
+                 hn::IfThenElseZero(there, load(pushes + 2 * array).v)};
+        }
+        return force;
+    }
+
 #define LINKS Links::count
+#undef SPRINGS
+#define SPRINGS (with_cells ? 0 : Links::count)
 #define HINGES 0
+#define CELLS (with_cells ? 8 : 0)
+#define OWN_CELLS
 #if HWY_TARGET == HWY_SCALAR  // for processors from before 2010: loops take the compiler a third of the time
 #define UNROLL
 #else
@@ -251,16 +293,21 @@ struct GridPhysics : NodeAccess<AnyPass> {
 #include "palpate/solver/node.inl"
 #undef OWN_PULL
 #undef UNROLL
+#undef OWN_CELLS
+#undef CELLS
 #undef HINGES
+#undef SPRINGS
 #undef LINKS
 };
 
 // Nodes with their springs written out, and their hinges, if the body has any. What acts on a node whatever
 // its springs, obstacles and tools, is made for these alone.
-template <class AnyPass = Pass, bool with_hinges = false>
+template <class AnyPass = Pass, bool with_hinges = false, bool with_cells = false>
 struct TablePhysics : NodeAccess<AnyPass> {
     using WithPass = AnyPass;
-    using Quiet = TablePhysics<QuietPass, with_hinges>;
+    using Quiet = TablePhysics<QuietPass, with_hinges, with_cells>;
+    static constexpr bool has_cells = false;  // none that are worked out beforehand
+    struct Eight;
     USE_NODE_ACCESS(AnyPass)
     struct Constants {
         explicit Constants(const Pass&) {}
@@ -299,6 +346,24 @@ struct TablePhysics : NodeAccess<AnyPass> {
     }
     FN Pack longest(int l) const { return load(whole(l).longest); }
 
+    // As CellMemory writes them.
+    struct CellRecord {
+        std::uint32_t corners[8][HWY_LANES(float)];
+        float weight[HWY_LANES(float)];
+    };
+    FN const CellRecord& cell(int k) const {
+        return reinterpret_cast<const CellRecord*>(
+            body.cells.records)[8 * (std::size_t(id) / lanes()) + std::size_t(k)];
+    }
+    FN Pack cell_weight(int k) const { return load(cell(k).weight); }
+    FN Pack3 cell_corner(Pack3 p, int k, int c) const {
+        const vec3 way = body.cells.corners[std::size_t(c)] - body.cells.corners[std::size_t(k)];
+        return of_nodes(at.places, cell(k).corners[c]) - p + Pack3(way.x, way.y, way.z);
+    }
+    FN Pack3 cell_corner_passing(Pack3 v, int k, int c) const {
+        return of_nodes(at.speeds, cell(k).corners[c]) - v;
+    }
+
     // With the share worked into stiffness and tension. The stream is longer than the nearer caches, and is
     // asked for ahead: that brings a twentieth where it fits the last of them, a fifth where it does not.
     FN Pack pull(int l, Pack square) const {
@@ -313,12 +378,14 @@ struct TablePhysics : NodeAccess<AnyPass> {
 #define FAN slice().fan
 #define LINKS slice().count
 #define HINGES (with_hinges ? hinges().count : 0)
+#define CELLS (with_cells ? 8 : 0)
 #define UNROLL
 #define OWN_PULL
 #include "palpate/solver/node.inl"
 #include "palpate/solver/obstacles.inl"
 #undef OWN_PULL
 #undef UNROLL
+#undef CELLS
 #undef HINGES
 #undef LINKS
 #undef FAN
@@ -358,6 +425,55 @@ FN void for_each_pack(const Task& s, int first_block, int end_block, Do act) {
     for (int block = first_block; block < end_block; ++block)
         for_each_pack<Physics>(s, pass, constants, s.states[s.plan.at], block, act);
 }
+
+// Works out cells of tissue, in the order of their lowest corners, not long before nodes need them.
+template <class Physics>
+class CellsAhead {
+ public:
+    // For the nodes of these blocks.
+    FN CellsAhead(const Task& s, const typename Physics::WithPass& pass,
+                  const typename Physics::Constants& constants, int first_block, int end_block)
+        : s_(s), pass_(pass), constants_(constants) {
+        wanted_ = Physics::has_cells && first_block < end_block && pass.kick > 0;
+        if (!wanted_) return;
+        const auto width = std::ptrdiff_t(lanes());
+        next_ = s.body.blocks[first_block].first_slot - s.body.cells.reach;
+        next_ -= next_ < 0 ? width + next_ % width : next_ % width;
+        for (; next_ < 0; next_ += width) write({});  // there are none before the first
+    }
+
+    // Those whose lowest corners lie before this slot.
+    FN void up_to(int end_slot) {
+        if constexpr (!Physics::has_cells) return;
+        if (!wanted_) return;
+        const Fields& at = s_.states[s_.plan.at];
+        for (; next_ < end_slot; next_ += std::ptrdiff_t(lanes())) {
+            while (s_.body.runs[run_].first + s_.body.runs[run_].count <= next_) ++run_;
+            Physics physics(s_, pass_, constants_, at, run_, next_);
+            if constexpr (Physics::has_cells)
+                write(physics.damped_cell_forces(load_node<Physics>(s_.body, at, next_), 0));
+        }
+    }
+
+ private:
+    FN void write(const typename Physics::Eight& pushes) {
+        const std::ptrdiff_t size = s_.cells.size, width = std::ptrdiff_t(lanes()), array = size + width,
+                             place = (next_ + size) % size;
+        for (int c = 0; c < 8; ++c) {
+            float* const numbers = s_.cells.numbers + 3 * c * array;
+            store(pushes.c[c], numbers, numbers + array, numbers + 2 * array, place);
+            // Once more behind the last, for registers that begin before it.
+            if (place == 0) store(pushes.c[c], numbers, numbers + array, numbers + 2 * array, size);
+        }
+    }
+
+    const Task& s_;
+    const typename Physics::WithPass& pass_;
+    const typename Physics::Constants& constants_;
+    bool wanted_ = false;
+    std::ptrdiff_t next_ = 0;
+    int run_ = 0;
+};
 
 // Forces and the motion that they bring.
 template <class Physics>
@@ -467,10 +583,15 @@ void pass(const Task& s, int first_block, int end_block, Largest& largest) {
     const typename Quiet::Constants quiet_constants(quiet_pass);
     const typename Physics::Constants constants(s.pass);
     const bool tools = s.pass.tips > 0 || s.pass.pushes > 0;
+    const bool calm = QuietPass::calm(s.pass);
+    CellsAhead<Physics> cells(s, s.pass, constants, calm ? end_block : first_block, end_block);
+    CellsAhead<Quiet> quiet_cells(s, quiet_pass, quiet_constants, calm ? first_block : end_block, end_block);
     for (int b = first_block; b < end_block; ++b) {
         const Block& block = s.body.blocks[b];
         const Kept was(s, block);
-        if (!QuietPass::calm(s.pass) || (tools && touched(s, b, s.moved[s.plan.at][b])))
+        cells.up_to(block.end_slot);
+        quiet_cells.up_to(block.end_slot);
+        if (!calm || (tools && touched(s, b, s.moved[s.plan.at][b])))
             move<Physics>(s, s.pass, constants, b);
         else
             move<Quiet>(s, quiet_pass, quiet_constants, b);
@@ -569,9 +690,12 @@ auto of(const BodyView& body, Act act) {
             return act.template operator()<GridPhysics<VolumeStencil, 1, true, true>>();
         case Springs::turned_volume:
             return act.template operator()<GridPhysics<VolumeStencil, 1, false, true>>();
+        case Springs::tissue:
+            return act.template operator()<GridPhysics<TissueStencil, 3, false, false, true>>();
         case Springs::table:
             break;
     }
+    if (body.cells.records) return act.template operator()<TablePhysics<Pass, true, true>>();
     return body.hinges.slices ? act.template operator()<TablePhysics<Pass, true>>()
                               : act.template operator()<TablePhysics<>>();
 }

@@ -31,6 +31,7 @@ enum class Springs {
     turned_cloth,
     volume,
     turned_volume,
+    tissue,  // cells in place of springs, along any axes
     table
 };
 
@@ -58,6 +59,22 @@ struct Hinges {
     const std::uint32_t* records;
 };
 
+/// Cells of tissue.
+struct Cells {
+    std::array<vec3, 8> corners;  // m, at rest, from the lowest
+    const float* weights;  // a grid's: of the cell whose lowest corner is the node; 0 where there is none
+    int reach;             // a grid's: slots from a node back to the lowest corner of any of its cells
+    const std::uint32_t* records;  // a table's; null where it has none
+};
+
+/// What cells do to their corners, N: x, y, z of each corner in turn, 24 arrays of `size` and one register
+/// more. The cell of a slot stands at the slot modulo `size`, which is as much as the next nodes need, so
+/// that it stays in the cache.
+struct CellRing {
+    float* numbers;
+    int size;
+};
+
 /// m: so far both ends of a spring may come from their places at rest, and it is not torn yet, which it is at
 /// a length whose square is `torn_at`, m². `way`: from end to end at rest.
 inline float whole_within(float torn_at, vec3 way) {
@@ -69,15 +86,18 @@ struct BodyView {
     Springs springs;
     const Run* runs;
     const Block* blocks;
-    const Bounds* rest_bounds;              // m, of each block's nodes
-    const float* furthest_cover;            // m, of each block's nodes
-    const int* offsets;                     // a grid's
-    std::array<vec3, 32> along;             // a grid's: each link at rest, m
-    float spacing;                          // m, where links follow the axes
-    const std::uint32_t* words[2];          // a grid's shares, one bit a link, or three of ten links each
-    const float* half_strength;             // half of each node's factor on stiffness; null: 1
-    Ties ties;                              // a table's
-    Hinges hinges;                          // a table's; null where it has none
+    const Bounds* rest_bounds;    // m, of each block's nodes
+    const float* furthest_cover;  // m, of each block's nodes
+    const int* offsets;           // a grid's
+    std::array<vec3, 32> along;   // a grid's: each link at rest, m
+    float spacing;                // m, where links follow the axes
+    /// A grid's shares, one bit a link, or three of ten links each; of tissue, from bit 24 of the second on,
+    /// whether there is a cell of which the node is corner 0, 1 …
+    const std::uint32_t* words[2];
+    const float* half_strength;  // half of each node's factor on stiffness; null: 1
+    Ties ties;                   // a table's
+    Hinges hinges;               // a table's; null where it has none
+    Cells cells;
     const float* inverse_mass;              // 1/kg
     const float *rest_x, *rest_y, *rest_z;  // m
     const float *area, *cover;              // m², m
@@ -105,6 +125,7 @@ struct Task {
     std::array<Bounds*, 4>
         moved;  // of each state and block: how far its nodes have come from their places at rest, m
     const Pushes* pushes = nullptr;
+    CellRing cells = {};  // of whoever works on it
 };
 
 /// The largest of what a pass saw at the end of a call, squared.

@@ -56,6 +56,11 @@ class GridLayout {
  public:
     GridLayout(const Body& body, int lanes, Layout& layout)
         : body_(body), stencil_(*body.grid()), lanes_(lanes), layout_(layout) {
+        for (const Link& link : stencil_.links) links_.push_back(link.offset);
+        if (tissue_of(body)) {
+            cells_ = own_cells(body);
+            links_.insert(links_.end(), {ivec3(1), ivec3(-1)});
+        }
         box_ = fills_its_box(body.at);
         choose_axis();
         give_slots();
@@ -99,8 +104,7 @@ class GridLayout {
         const ivec3 size =
             segments_.back().first - segments_.front().first + ivec3(segments_.back().length, 1, 1);
         std::vector<int> offsets;
-        for (const Link& link : stencil_.links)
-            offsets.push_back(link.offset.x + size.x * (link.offset.y + size.y * link.offset.z));
+        for (ivec3 link : links_) offsets.push_back(link.x + size.x * (link.y + size.y * link.z));
         for (int first = 0; first < layout_.slots; first += lanes_) add(first, offsets);
     }
 
@@ -130,16 +134,29 @@ class GridLayout {
 
     // From the slots of one register to their neighbours' along each link, 0 where none has any.
     std::vector<int> offsets_of(const Segment& segment, int first) const {
-        std::vector<int> offsets(stencil_.links.size(), 0);
+        std::vector<int> offsets(links_.size(), 0);
         const auto from = nodes_from(segment, first);
         for (std::size_t l = 0; l < offsets.size(); ++l)
             for (int node : from) {
-                if (stencil_.quarters(std::size_t(node), l) == 0) continue;
-                const int to = number_.at(body_.at[std::size_t(node)] + stencil_.links[l].offset);
+                if (!leads_on(std::size_t(node), l)) continue;
+                const int to = number_.at(body_.at[std::size_t(node)] + links_[l]);
                 offsets[l] = layout_.slot[std::size_t(to)] - layout_.slot[std::size_t(node)];
                 break;  // the others' are as far: no gap within a segment is as wide as a register
             }
         return offsets;
+    }
+
+    // Whether a node has this link: by a spring, or through a cell of tissue that holds both of its ends.
+    bool leads_on(std::size_t node, std::size_t link) const {
+        if (link < stencil_.links.size() && stencil_.quarters(node, link) > 0) return true;
+        if (cells_.empty()) return false;
+        for (int k = 0; k < 8; ++k) {
+            const ivec3 end = ivec3(k & 1, k >> 1 & 1, k >> 2) + links_[link];
+            const bool holds =
+                glm::all(glm::greaterThanEqual(end, ivec3(0))) && glm::all(glm::lessThanEqual(end, ivec3(1)));
+            if (holds && cells_[node][std::size_t(k)] >= 0) return true;
+        }
+        return false;
     }
 
     std::span<const int> nodes_from(const Segment& segment, int first) const {
@@ -153,6 +170,8 @@ class GridLayout {
 
     const Body& body_;
     const GridSprings& stencil_;
+    std::vector<ivec3> links_;     // the springs', and through the cells of tissue
+    std::vector<OwnCells> cells_;  // of tissue
     const int lanes_;
     Layout& layout_;
     const GridIndex number_{body_.at};

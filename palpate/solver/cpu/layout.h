@@ -30,7 +30,9 @@ struct Layout {
     std::vector<int> slot;  // of each node
     std::vector<Run> runs;  // at most 256 slots each
     std::vector<Block> blocks;
-    std::vector<int> offsets;  // of each run and each link: from a slot to that of its neighbour
+    /// Of each run and each link: from a slot to that of its neighbour. In tissue two more follow: through
+    /// the cell to its highest corner, and back through the one below.
+    std::vector<int> offsets;
     int slots = 0;
     int margin = 0;  // slots before the first and behind the last that a run may read
 

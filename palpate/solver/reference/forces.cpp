@@ -1,18 +1,21 @@
 #include "palpate/solver/forces.h"
 
 #include "palpate/base/error.h"
+#include "palpate/base/parallel.h"
 #include "palpate/solver/reference/node.h"
 
 #include <fmt/format.h>
 
 namespace palpate {
 
-using reference::NodeStates;
+using Now = reference::NodesNow<double>;
+using Physics = reference::NodePhysics<double>;
 
 struct Forces::Inside {
     const Body body;
     const reference::Surroundings around{body};
     const Pass pass = make_pass(body, {});
+    const std::vector<dvec3> none = std::vector<dvec3>(body.count(), dvec3(0));  // velocities
 
     void require(std::size_t length) const {
         if (length == body.count()) return;
@@ -20,12 +23,23 @@ struct Forces::Inside {
                     "hand in one for each");
     }
 
-    NodeStates<double> states(std::span<const dvec3> positions, std::span<const dvec3> velocities) const {
-        require(positions.size());
-        NodeStates<double> states{{positions.begin(), positions.end()},
-                                  {velocities.begin(), velocities.end()}};
-        states.velocities.resize(body.count(), dvec3(0));
-        return states;
+    Physics physics(const Now& now, std::size_t node, std::span<const Physics::Eight> cells = {}) const {
+        return reference::see(around, pass, now, node, {}, cells);
+    }
+
+    // of_cell(c) of each cell of tissue, then of_node(physics) of each node into `into`: on all processors.
+    template <class OfCell, class OfNode>
+    void of_all(const Now& now, std::span<dvec3> into, OfCell of_cell, OfNode of_node) const {
+        require(now.positions.size());
+        require(now.velocities.size());
+        require(into.size());
+        std::vector<Physics::Eight> cells(around.tissue ? body.cells.size() : 0);
+        parallel_for(cells.size(), 1024, [&](std::size_t c) { cells[c] = of_cell(c); });
+        parallel_for(into.size(), 4096, [&](std::size_t i) {
+            Physics nodes = physics(now, i, cells);
+            into[i] = of_node(nodes, reference::load(around, now, i));
+            if (around.tissue) into[i] += nodes.cells_force({});
+        });
     }
 };
 
@@ -33,27 +47,33 @@ Forces::Forces(const Body& body) : in_((check(body), new Inside{body})) {}
 Forces::~Forces() = default;
 
 void Forces::at(std::span<const dvec3> positions, std::span<dvec3> forces) const {
-    in_->require(forces.size());
-    const NodeStates<double> states = in_->states(positions, {});
-    for (std::size_t i = 0; i < forces.size(); ++i)
-        forces[i] = reference::see(in_->around, in_->pass, states, i).elastic_force(positions[i]);
+    const Now now(positions, in_->none);
+    in_->of_all(
+        now, forces, [&](std::size_t c) { return reference::cell_pushes(in_->around, in_->pass, now, c); },
+        [](Physics& physics, const Physics::Node& node) { return physics.elastic_force(node.position); });
 }
 
 void Forces::stiffness_times(std::span<const dvec3> positions, std::span<const dvec3> displacement,
                              std::span<dvec3> forces) const {
-    in_->require(displacement.size());
-    in_->require(forces.size());
-    const NodeStates<double> states = in_->states(positions, displacement);
-    for (std::size_t i = 0; i < forces.size(); ++i)
-        forces[i] = reference::see(in_->around, in_->pass, states, i)
-                        .elastic_stiffness_times(reference::load(in_->around, states, i));
+    const Now now(positions, displacement);
+    in_->of_all(
+        now, forces,
+        [&](std::size_t c) {
+            const auto lowest = std::size_t(in_->body.cells[c][0]);
+            Physics physics = in_->physics(now, lowest);
+            return physics.cell_stiffness_times(physics.cell_corners(positions[lowest], 0),
+                                                physics.cell_passing(displacement[lowest], 0),
+                                                physics.cell_weight(0));
+        },
+        [](Physics& physics, const Physics::Node& node) { return physics.elastic_stiffness_times(node); });
 }
 
 double Forces::energy(std::span<const dvec3> positions) const {
-    const NodeStates<double> states = in_->states(positions, {});
+    in_->require(positions.size());
+    const Now now(positions, in_->none);
     double sum = 0;
     for (std::size_t i = 0; i < positions.size(); ++i)
-        sum += reference::see(in_->around, in_->pass, states, i).elastic_energy(positions[i]);
+        sum += in_->physics(now, i).elastic_energy(positions[i]);
     return sum;
 }
 

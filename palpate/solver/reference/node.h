@@ -14,6 +14,8 @@ struct Surroundings {
     const Body& body;
     Table springs;  // where there is none its end is the node itself, and it pulls at nothing
     std::vector<std::vector<OwnHinge>> hinges;      // of each node
+    const TissueCells* tissue = nullptr;            // of the body, if it has some,
+    std::vector<OwnCells> cells = {};               // and each node's cells
     std::vector<vec3> corners = {};                 // of polygons
     std::vector<const DistanceField*> fields = {};  // of closed meshes
     std::span<const NodePush> pushes = {};          // one a node,
@@ -23,6 +25,8 @@ struct Surroundings {
     void read_terms() {
         hinges = own_hinges(body);
         springs = table(body);
+        tissue = palpate::tissue_of(body);
+        if (tissue) cells = own_cells(body);
         for (std::size_t t = 0; t < springs.ties.size(); ++t)
             if (int& to = springs.ties[t].to; to < 0) to = int(t) / springs.width;
     }
@@ -37,21 +41,33 @@ struct NodeStates {
     std::vector<glm::vec<3, Real>> positions, velocities;
 };
 
+/// The same where somebody else keeps them.
+template <class Real>
+struct NodesNow {
+    std::span<const glm::vec<3, Real>> positions, velocities;
+
+    NodesNow(const NodeStates<Real>& states) : positions(states.positions), velocities(states.velocities) {}
+    NodesNow(std::span<const glm::vec<3, Real>> places, std::span<const glm::vec<3, Real>> speeds)
+        : positions(places), velocities(speeds) {}
+};
+
 /// The physics of one node (node.inl), with access to its neighbours.
 /// `with_hinges`: whether any may have some; known when compiled, so that bodies without any pay nothing.
 template <class Number, bool with_hinges = true>
 struct NodePhysics {
     using Real = Number;
     using Real3 = glm::vec<3, Real>;
+    struct Eight;
 
     const Surroundings& world;
     const Pass& pass;
-    const NodeStates<Real>& now;
+    const NodesNow<Real> now;
     int id;
     const Tie* ties;                   // this node's springs,
     std::span<const OwnHinge> hinges;  // and hinges
     Real outside_area, outside_cover;
     std::span<const RoundTip> tips;
+    const Eight* cell_pushes = nullptr;  // of each cell, on its corners
 
     Real3 toward(Real3 p, int l) const { return now.positions[std::size_t(ties[l].to)] - p; }
     Real3 passing(Real3 v, int l) const { return now.velocities[std::size_t(ties[l].to)] - v; }
@@ -69,6 +85,17 @@ struct NodePhysics {
     Real hinge_stiffness(int h) const { return hinges[std::size_t(h)].stiffness; }
     Real hinge_rest(int h) const { return hinges[std::size_t(h)].rest; }
     Real hinge_area_square(int h) const { return hinges[std::size_t(h)].area_square; }
+    int cell(int k) const { return world.cells[std::size_t(id)][std::size_t(k)]; }
+    Real cell_weight(int k) const { return cell(k) < 0 ? 0 : world.tissue->weights[std::size_t(cell(k))]; }
+    Real3 cell_corner(Real3 p, int k, int c) const {
+        return cell(k) < 0 ? Real3(0) : now.positions[corner_node(k, c)] - p;
+    }
+    Real3 cell_corner_passing(Real3 v, int k, int c) const {
+        return cell(k) < 0 ? Real3(0) : now.velocities[corner_node(k, c)] - v;
+    }
+    std::size_t corner_node(int k, int c) const {
+        return std::size_t(world.body.cells[std::size_t(cell(k))][std::size_t(c)]);
+    }
     Real3 origin() const { return Real3(0); }
     Real area() const { return outside_area; }
     Real cover() const { return outside_cover; }
@@ -88,6 +115,7 @@ struct NodePhysics {
     static Real min(Real a, Real b) { return a < b ? a : b; }
     static Real inversesqrt(Real a) { return 1 / std::sqrt(a); }
     static Real asin(Real a) { return std::asin(a); }
+    static Real log(Real a) { return std::log(a); }
     static bool any_node(bool c) { return c; }
     static Real select(bool c, Real a, Real b) { return c ? a : b; }
     static Real3 select(bool c, Real3 a, Real3 b) { return c ? a : b; }
@@ -97,19 +125,32 @@ struct NodePhysics {
 #define UNROLL
 #define LINKS world.springs.width
 #define HINGES (with_hinges ? int(hinges.size()) : 0)
+#define CELLS (world.tissue ? 8 : 0)
+#define OWN_CELLS
 #include "palpate/solver/node.inl"
 #include "palpate/solver/obstacles.inl"
+#undef OWN_CELLS
+#undef CELLS
 #undef HINGES
 #undef LINKS
 #undef UNROLL
 #undef ASIDE
 #undef FN
+
+    // A cell is worked out once for its eight nodes.
+    Real3 cells_force(const Node&) const {
+        Real3 force(0);
+        for (int k = 0; k < 8; ++k)
+            if (cell(k) >= 0) force += cell_pushes[cell(k)].c[k];
+        return force;
+    }
 };
 
-/// Node `i` among the others at `now`.
-template <class Real, bool with_hinges = true>
-NodePhysics<Real, with_hinges> see(const Surroundings& all, const Pass& pass, const NodeStates<Real>& now,
-                                   std::size_t i, std::span<const RoundTip> tips = {}) {
+/// Node `i` among the others at `now`. `cell_pushes`: what each cell of tissue does to its corners.
+template <class Real, bool with_hinges = true, class Eight = typename NodePhysics<Real, with_hinges>::Eight>
+NodePhysics<Real, with_hinges> see(const Surroundings& all, const Pass& pass, const NodesNow<Real>& now,
+                                   std::size_t i, std::span<const RoundTip> tips = {},
+                                   std::span<const Eight> cell_pushes = {}) {
     return {all,
             pass,
             now,
@@ -118,14 +159,24 @@ NodePhysics<Real, with_hinges> see(const Surroundings& all, const Pass& pass, co
             with_hinges ? std::span(all.hinges[i]) : std::span<const OwnHinge>(),
             Real(all.body.area[i]),
             Real(all.body.cover[i]),
-            tips};
+            tips,
+            cell_pushes.data()};
 }
 
 /// Node `i` as it is in `from`.
 template <class Real, bool with_hinges = true>
-typename NodePhysics<Real, with_hinges>::Node load(const Surroundings& all, const NodeStates<Real>& from,
+typename NodePhysics<Real, with_hinges>::Node load(const Surroundings& all, const NodesNow<Real>& from,
                                                    std::size_t i) {
     return {from.positions[i], from.velocities[i], Real(all.body.inverse_mass[i])};
+}
+
+/// What cell `c` of tissue does to its corners, N.
+template <class Real, bool with_hinges = true>
+typename NodePhysics<Real, with_hinges>::Eight cell_pushes(const Surroundings& all, const Pass& pass,
+                                                           const NodesNow<Real>& now, std::size_t c) {
+    const auto lowest = std::size_t(all.body.cells[c][0]);
+    return see<Real, with_hinges>(all, pass, now, lowest)
+        .damped_cell_forces(load<Real, with_hinges>(all, now, lowest), 0);
 }
 
 }  // namespace palpate::reference

@@ -75,10 +75,12 @@ class Reference final : public Machine {
 
     std::vector<dvec3> kicked(const Pass& pass) const override {
         std::vector<dvec3> velocities;
+        const auto pushes = cell_pushes(states_[current], pass);
         for (std::size_t i = 0; i < body_.count(); ++i) {
             const Node node = load(states_[current], i);
-            const Real3 change =
-                node.inverse_mass > 0 ? see(i, states_[current], pass).acceleration(node) : Real3(0);
+            const Real3 change = node.inverse_mass > 0
+                                     ? see(i, states_[current], pass, {}, pushes).acceleration(node)
+                                     : Real3(0);
             velocities.push_back(dvec3(node.velocity + Real(pass.kick) * change));
         }
         return velocities;
@@ -97,6 +99,7 @@ class Reference final : public Machine {
     std::size_t memory() const override {
         std::size_t bytes = around_.springs.ties.size() * sizeof(Tie);
         for (const auto& hinges : around_.hinges) bytes += hinges.size() * sizeof(OwnHinge);
+        bytes += around_.cells.size() * sizeof(OwnCells);
         for (const NodeStates<Real>& state : states_) bytes += 2 * state.positions.size() * sizeof(Real3);
         return bytes;
     }
@@ -105,8 +108,10 @@ class Reference final : public Machine {
     void pass_over_nodes(const Pass& pass, const PassPlan& plan, Findings& found) {
         const NodeStates<Real>&start = states_[plan.start], &at = states_[plan.at];
         NodeStates<Real>&next = states_[plan.next], &total = states_[sum];
+        std::vector<typename Physics::Eight> pushes;
+        if (pass.kick > 0) pushes = cell_pushes(at, pass);
         for (std::size_t i = 0; i < body_.count(); ++i) {
-            Physics physics = see(i, at, pass, plan);
+            Physics physics = see(i, at, pass, plan, pushes);
             const Node node = load(at, i);
             const Real3 change = pass.kick > 0 ? physics.acceleration(node) : Real3(0);
             if (pass.part > 0)
@@ -138,9 +143,17 @@ class Reference final : public Machine {
         }
     }
 
-    Physics see(std::size_t i, const NodeStates<Real>& at, const Pass& pass,
-                const PassPlan& plan = {}) const {
-        return reference::see<Real, with_hinges>(around_, pass, at, i, plan.tips);
+    // Of each cell of tissue.
+    std::vector<typename Physics::Eight> cell_pushes(const NodeStates<Real>& at, const Pass& pass) const {
+        std::vector<typename Physics::Eight> pushes(around_.tissue ? body_.cells.size() : 0);
+        for (std::size_t c = 0; c < pushes.size(); ++c)
+            pushes[c] = reference::cell_pushes<Real, with_hinges>(around_, pass, at, c);
+        return pushes;
+    }
+
+    Physics see(std::size_t i, const NodeStates<Real>& at, const Pass& pass, const PassPlan& plan = {},
+                std::span<const typename Physics::Eight> pushes = {}) const {
+        return reference::see<Real, with_hinges>(around_, pass, at, i, plan.tips, pushes);
     }
     Node load(const NodeStates<Real>& from, std::size_t i) const {
         return reference::load<Real, with_hinges>(around_, from, i);

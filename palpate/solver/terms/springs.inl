@@ -12,7 +12,7 @@ FN Real pull(int l, Real square) { return share(l) * (stiffness(l) - tension(l) 
 // Each spring pulls with stiffness x (length - rest length) towards its neighbour (2005, eq. 1 without the factor 1/2).
 FN Real3 spring_force(Real3 position) {
     Real3 force = Real3(0.0f, 0.0f, 0.0f);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
+    UNROLL for (int l = 0; l < SPRINGS; ++l) {
         Real3 along = toward(position, l);
         force += pull(l, squared(along)) * along;
     }
@@ -22,7 +22,7 @@ FN Real3 spring_force(Real3 position) {
 // Each spring resists the speed at which it stretches: the part of Rayleigh damping that is proportional to stiffness.
 ASIDE Real3 spring_damping(Node node) {
     Real3 force = Real3(0.0f, 0.0f, 0.0f);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
+    UNROLL for (int l = 0; l < SPRINGS; ++l) {
         Real3 along = unit(toward(node.position, l));
         Real stretching = dot(passing(node.velocity, l), along);
         force += (share(l) * stiffness(l) * Real(pass.link_damping) * stretching) * along;
@@ -33,7 +33,7 @@ ASIDE Real3 spring_damping(Node node) {
 // N: how the force on a node resists a displacement of all nodes, which their velocities hold, m.
 ASIDE Real3 spring_stiffness_times(Node node) {
     Real3 force = Real3(0.0f, 0.0f, 0.0f);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
+    UNROLL for (int l = 0; l < SPRINGS; ++l) {
         Real3 along = toward(node.position, l), change = passing(node.velocity, l);
         Real inverse = inversesqrt(squared(along));
         Real3 direction = inverse * along;
@@ -47,7 +47,7 @@ ASIDE Real3 spring_stiffness_times(Node node) {
 // J: of a node's springs the half that is its own.
 ASIDE Real spring_energy(Real3 position) {
     Real energy = Real(0.0f);
-    UNROLL for (int l = 0; l < LINKS; ++l) {
+    UNROLL for (int l = 0; l < SPRINGS; ++l) {
         Real square = squared(toward(position, l));
         Real rest = tension(l) / max(stiffness(l), Real(1e-30f));
         Real stretch = square * inversesqrt(square) - rest;
@@ -60,7 +60,7 @@ ASIDE Real spring_energy(Real3 position) {
 // soon does.
 ASIDE Real torn_springs(Real3 position) {
     Real none = Real(0.0f), wrong = none;
-    UNROLL for (int l = 0; l < LINKS; ++l) {
+    UNROLL for (int l = 0; l < SPRINGS; ++l) {
         Real beyond = share(l) * stiffness(l) * (squared(toward(position, l)) - longest(l));
         wrong += select(beyond <= none, none, Real(1.0f));
     }

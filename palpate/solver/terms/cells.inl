@@ -1,0 +1,167 @@
+// cells.inl: cells of tissue. It stands in node.inl, in the same words; a backend supplies the cells.
+//
+// A cell is a cube of a neo-Hookean solid with one integration point. F, the mean of its edges over the edge at rest, gives
+// the energy for each volume at rest
+//   mu/2 (|F|^2 - 3) + r/2 (lambda d^2 + mu min(d, 0)^2) - mu (min(d, 0) + ln max(J, 1)),   J = det F, d = J - 1.
+// It is finite where a cell is flat or inside out, and there pushes it back. r = 1 / (1 + 4 u^2), u = max(|F|^2/3 - 1, 0),
+// lowers the bulk modulus of a cell that is drawn out, so that the step which holds at rest holds there too. What F does not
+// see are twelve ways to bend and twist the cell, the hourglasses; springs resist them, the first nine with E h/48, so that
+// a bar one cell thick bends as beams do, the last three with mu h/16 (Flanagan and Belytschko 1981 name and control them).
+//
+// stiffness_times is C : dE, of the rate of the Green strain E and the moduli at rest: at rest that is the derivative of the
+// forces, elsewhere it leaves out the stress's own part, and so is never negative and does not resist a rotation. It too is
+// eased where a cell is drawn out.
+
+// Of corner k: x in the lowest bit, then y, then z.
+struct Eight {
+    Real3 c[8];
+};
+
+// Sums and differences along the three axes. 1, 2 and 4 are four times the mean edges; 3, 5, 6 and 7 the hourglasses.
+FN Eight modes(Eight e) {
+    UNROLL for (int bit = 1; bit < 8; bit *= 2)
+        UNROLL for (int k = 0; k < 8; ++k)
+            if ((k & bit) == 0) {
+                Real3 a = e.c[k], b = e.c[k + bit];
+                e.c[k] = a + b;
+                e.c[k + bit] = b - a;
+            }
+    return e;
+}
+
+// The transpose: what the modes feel, on the corners.
+FN Eight on_corners(Eight e) {
+    UNROLL for (int bit = 1; bit < 8; bit *= 2)
+        UNROLL for (int k = 0; k < 8; ++k)
+            if ((k & bit) == 0) {
+                Real3 a = e.c[k], b = e.c[k + bit];
+                e.c[k] = a - b;
+                e.c[k + bit] = a + b;
+            }
+    return e;
+}
+
+// F by its columns, and what the energy is made of.
+struct Deformation {
+    Real3 f0, f1, f2;  // columns of F,
+    Real3 k0, k1, k2;  // and of its cofactors
+    Real d, drawn;     // J - 1; u
+};
+
+FN Deformation deformation(Eight mode) {
+    Real to_f = Real(0.25f / pass.cell_size);
+    Deformation now;
+    now.f0 = to_f * mode.c[1];
+    now.f1 = to_f * mode.c[2];
+    now.f2 = to_f * mode.c[4];
+    now.k0 = cross(now.f1, now.f2);
+    now.k1 = cross(now.f2, now.f0);
+    now.k2 = cross(now.f0, now.f1);
+    now.d = dot(now.f0, now.k0) - Real(1.0f);
+    Real square = dot(now.f0, now.f0) + dot(now.f1, now.f1) + dot(now.f2, now.f2);
+    now.drawn = max(square * Real(1.0f / 3.0f) - Real(1.0f), Real(0.0f));
+    return now;
+}
+
+FN Real eased(Real drawn) { return Real(1.0f) / (Real(1.0f) + Real(4.0f) * drawn * drawn); }
+
+// What the mean edges feel, and the hourglasses by a spring each, on the corners.
+FN Eight with_hourglasses(Eight push, Eight mode, Real weight) {
+    Real bend = Real(pass.bend) * weight;
+    push.c[0] = Real3(0.0f, 0.0f, 0.0f);
+    push.c[3] = bend * mode.c[3];
+    push.c[5] = bend * mode.c[5];
+    push.c[6] = bend * mode.c[6];
+    push.c[7] = (Real(pass.twist) * weight) * mode.c[7];
+    return on_corners(push);
+}
+
+// N, that a cell puts on its corners, which may count from any point.
+FN Eight cell_forces(Eight corners, Real weight) {
+    Eight mode = modes(corners), push;
+    Deformation now = deformation(mode);
+    Real squeezed = max(-now.d, Real(0.0f)), ease = eased(now.drawn);
+    Real pressure = ease * (Real(pass.lame) * now.d - Real(pass.shear) * squeezed) -
+                    Real(pass.shear) / (Real(1.0f) + max(now.d, Real(0.0f)));
+    Real bulk = Real(pass.lame) * now.d * now.d + Real(pass.shear) * squeezed * squeezed;
+    Real tension = Real(pass.shear) - Real(8.0f / 3.0f) * now.drawn * ease * ease * bulk;
+    Real area = Real(-0.25f * pass.cell_size * pass.cell_size) * weight;
+    push.c[1] = area * (tension * now.f0 + pressure * now.k0);
+    push.c[2] = area * (tension * now.f1 + pressure * now.k1);
+    push.c[4] = area * (tension * now.f2 + pressure * now.k2);
+    return with_hourglasses(push, mode, Real(-1.0f) * weight);
+}
+
+// N: how the forces of a cell resist a displacement of its corners, m.
+FN Eight cell_stiffness_times(Eight corners, Eight displacement, Real weight) {
+    Eight change = modes(displacement), push;
+    Deformation now = deformation(modes(corners));
+    Real to_f = Real(0.25f / pass.cell_size);
+    Real3 g0 = to_f * change.c[1], g1 = to_f * change.c[2], g2 = to_f * change.c[4];
+    Real e00 = dot(now.f0, g0), e11 = dot(now.f1, g1), e22 = dot(now.f2, g2);  // the change of the Green strain
+    Real e01 = Real(0.5f) * (dot(now.f0, g1) + dot(now.f1, g0)), e12 = Real(0.5f) * (dot(now.f1, g2) + dot(now.f2, g1));
+    Real e20 = Real(0.5f) * (dot(now.f2, g0) + dot(now.f0, g2));
+    Real twice = Real(2.0f * pass.shear), mean = Real(pass.lame) * (e00 + e11 + e22);
+    Real size = Real(1.0f) + now.drawn;
+    Real area = Real(0.25f * pass.cell_size * pass.cell_size) * weight / (size * size);
+    push.c[1] = area * ((twice * e00 + mean) * now.f0 + (twice * e01) * now.f1 + (twice * e20) * now.f2);
+    push.c[2] = area * ((twice * e01) * now.f0 + (twice * e11 + mean) * now.f1 + (twice * e12) * now.f2);
+    push.c[4] = area * ((twice * e20) * now.f0 + (twice * e12) * now.f1 + (twice * e22 + mean) * now.f2);
+    return with_hourglasses(push, change, weight);
+}
+
+// J.
+ASIDE Real cell_energy(Eight corners, Real weight) {
+    Eight mode = modes(corners);
+    Deformation now = deformation(mode);
+    Real square = dot(now.f0, now.f0) + dot(now.f1, now.f1) + dot(now.f2, now.f2);
+    Real least = min(now.d, Real(0.0f)), volume = Real(pass.cell_size * pass.cell_size * pass.cell_size);
+    Real density = Real(0.5f * pass.shear) * (square - Real(3.0f)) +
+                   Real(0.5f) * eased(now.drawn) * (Real(pass.lame) * now.d * now.d + Real(pass.shear) * least * least) -
+                   Real(pass.shear) * (least + log(max(now.d, Real(0.0f)) + Real(1.0f)));
+    Real bent = dot(mode.c[3], mode.c[3]) + dot(mode.c[5], mode.c[5]) + dot(mode.c[6], mode.c[6]);
+    Real hourglass = Real(0.5f * pass.bend) * bent + Real(0.5f * pass.twist) * dot(mode.c[7], mode.c[7]);
+    return weight * (volume * density + hourglass);
+}
+
+// ---- what a node has of the cells around it ----
+
+FN Eight cell_corners(Real3 position, int k) {
+    Eight corners;
+    UNROLL for (int c = 0; c < 8; ++c) corners.c[c] = cell_corner(position, k, c);
+    return corners;
+}
+FN Eight cell_passing(Real3 velocity, int k) {
+    Eight corners;
+    UNROLL for (int c = 0; c < 8; ++c) corners.c[c] = cell_corner_passing(velocity, k, c);
+    return corners;
+}
+
+// N, that the cell of which this node is corner k puts on its corners, with the damping that is proportional to stiffness.
+FN Eight damped_cell_forces(Node node, int k) {
+    Eight corners = cell_corners(node.position, k);
+    Eight force = cell_forces(corners, cell_weight(k));
+    if (LINK_DAMPING) {
+        Eight resistance = cell_stiffness_times(corners, cell_passing(node.velocity, k), cell_weight(k));
+        UNROLL for (int c = 0; c < 8; ++c) force.c[c] -= Real(pass.link_damping) * resistance.c[c];
+    }
+    return force;
+}
+
+#ifndef OWN_CELLS
+FN Real3 cells_force(Node node) {
+    Real3 force = Real3(0.0f, 0.0f, 0.0f);
+    for (int k = 0; k < CELLS; ++k) force += damped_cell_forces(node, k).c[k];
+    return force;
+}
+#endif
+
+// J, of the one of its cells of which this node is the lowest corner.
+ASIDE Real own_cell_energy(Real3 position) { return cell_energy(cell_corners(position, 0), cell_weight(0)); }
+
+// 1 where that is stretched to ten times its size.
+ASIDE Real own_cell_torn(Real3 position) {
+    Deformation now = deformation(modes(cell_corners(position, 0)));
+    Real longest = max(max(dot(now.f0, now.f0), dot(now.f1, now.f1)), dot(now.f2, now.f2));
+    return select(cell_weight(0) * (longest - Real(100.0f)) <= Real(0.0f), Real(0.0f), Real(1.0f));
+}

@@ -1,0 +1,323 @@
+// Cells of tissue: the forces are the slope of the energy, the solid is as stiff as it is told, keeps its
+// volume, and comes back from wherever it was put.
+#include "palpate/body/lattice.h"
+#include "palpate/solver/forces.h"
+#include "palpate/solver/solver.h"
+#include "palpate/solver/stability.h"
+#include "tests/shapes.h"
+#include "tests/solver/agreement.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace palpate {
+namespace {
+
+using Places = std::vector<dvec3>;
+
+Places places(const Body& body) { return {body.positions.begin(), body.positions.end()}; }
+
+Places scattered(Places from, double size, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> way(-size, size);
+    for (dvec3& p : from) p += dvec3(way(random), way(random), way(random));
+    return from;
+}
+
+Places forces(const Body& body, const Places& at) {
+    Places made(at.size());
+    Forces(body).at(at, made);
+    return made;
+}
+
+double largest(const Places& vectors) {
+    double most = 0;
+    for (dvec3 v : vectors)
+        if (const double length = glm::length(v); !(length <= most)) most = length;
+    return most;
+}
+
+// An organ with cells of many weights.
+Body ragged(float poisson, unsigned seed) {
+    Material material = solid;
+    material.poisson = poisson;
+    Body body = lattice(ellipsoid({0.02f, 0.03f, 0.025f}, 9), {.nodes = 90, .material = material});
+    std::mt19937 random(seed);
+    for (Term& term : body.terms)
+        if (auto* cells = std::get_if<TissueCells>(&term))
+            for (float& weight : cells->weights)
+                weight *= std::uniform_real_distribution<float>(0.2f, 3)(random);
+    return body;
+}
+
+// The energy as a textbook writes it: F from the gradients of trilinear shape functions in the middle of a
+// cell, the hourglasses by their base vectors.
+double energy_by_the_book(const Body& body, const Places& at) {
+    const TissueCells& cells = *tissue_of(body);
+    const double h = body.spacing, mu = cells.shear(), lambda = cells.lame(), modulus = cells.youngs_modulus;
+    double sum = 0;
+    for (std::size_t c = 0; c < body.cells.size(); ++c) {
+        dmat3 f(0);
+        dvec3 hourglass[4] = {};
+        for (int k = 0; k < 8; ++k) {
+            const dvec3 p = at[std::size_t(body.cells[c][std::size_t(k)])];
+            const dvec3 xi = 2.0 * dvec3(k & 1, k >> 1 & 1, k >> 2) - 1.0;
+            f += glm::outerProduct(p, xi / (4 * h));
+            const double bases[] = {xi.x * xi.y, xi.x * xi.z, xi.y * xi.z, xi.x * xi.y * xi.z};
+            for (int m = 0; m < 4; ++m) hourglass[m] += bases[m] * p;
+        }
+        const double j = glm::determinant(f), d = j - 1, least = std::min(d, 0.0);
+        const double square = glm::dot(f[0], f[0]) + glm::dot(f[1], f[1]) + glm::dot(f[2], f[2]);
+        const double u = std::max(square / 3 - 1, 0.0), r = 1 / (1 + 4 * u * u);
+        const double density = mu / 2 * (square - 3) + r / 2 * (lambda * d * d + mu * least * least) -
+                               mu * (least + std::log(std::max(j, 1.0)));
+        double springs = 0;
+        for (int m = 0; m < 4; ++m)
+            springs += (m < 3 ? modulus * h / 48 : mu * h / 16) / 2 * glm::dot(hourglass[m], hourglass[m]);
+        sum += double(cells.weights[c]) * (h * h * h * density + springs);
+    }
+    return sum;
+}
+
+TEST(Tissue, EnergyIsTheTextbooks) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Body body = ragged(0.05f + 0.022f * float(seed), seed);
+        const Places at = scattered(places(body), 0.02 * seed * body.spacing, seed);
+        const double expected = energy_by_the_book(body, at), found = Forces(body).energy(at);
+        EXPECT_LE(std::abs(found - expected), 1e-6 * std::max(std::abs(expected), 1e-6)) << seed;
+    }
+}
+
+TEST(Tissue, ForcesAreTheSlopeOfTheEnergy) {
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        const Body body = ragged(0.05f + 0.04f * float(seed), seed);
+        const Places at = scattered(places(body), 0.1 * seed * body.spacing, seed);
+        const Places way = scattered(Places(at.size(), dvec3(0)), 1, seed + 100), force = forces(body, at);
+        const double small = 1e-6 * body.spacing;
+        Places ahead = at, behind = at;
+        double expected = 0, size = 0;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            ahead[i] += small * way[i], behind[i] -= small * way[i];
+            expected -= glm::dot(force[i], way[i]);
+            size += glm::length(force[i]);
+        }
+        const double slope =
+            (energy_by_the_book(body, ahead) - energy_by_the_book(body, behind)) / (2 * small);
+        EXPECT_LE(std::abs(slope - expected),
+                  1e-5 * (size + 2000 * double(body.spacing) * double(body.spacing)))
+            << seed;
+    }
+}
+
+TEST(Tissue, StiffnessIsTheSlopeOfTheForcesAtRest) {
+    for (float poisson : {0.01f, 0.25f, 0.45f, 0.49f}) {
+        const Body body = ragged(poisson, 5);
+        const Places at = places(body), way = scattered(Places(at.size(), dvec3(0)), 1, 9);
+        const double small = 1e-7 * body.spacing;
+        Places ahead = at, behind = at, stiffness(at.size());
+        for (std::size_t i = 0; i < at.size(); ++i) ahead[i] += small * way[i], behind[i] -= small * way[i];
+        Forces(body).stiffness_times(at, way, stiffness);
+        const Places there = forces(body, ahead), back = forces(body, behind);
+        double apart = 0;
+        for (std::size_t i = 0; i < at.size(); ++i)
+            apart = std::max(apart, glm::length(stiffness[i] + (there[i] - back[i]) / (2 * small)));
+        EXPECT_LE(apart, 2e-4 * largest(stiffness)) << poisson;
+    }
+}
+
+TEST(Tissue, StiffnessIsSymmetricNeverNegativeAndLetsABodyTurn) {
+    for (unsigned seed = 0; seed < 10; ++seed) {
+        const Body body = ragged(0.45f, seed);
+        Places at = places(body);
+        const dmat3 bent =
+            dmat3(1) + 0.3 * dmat3(scattered(Places(1, dvec3(0)), 1, seed)[0], dvec3(0), dvec3(0.2));
+        for (dvec3& p : at) p = bent * p;
+        const Forces of(body);
+        const Places none(at.size(), dvec3(0)), spin = [&] {
+            Places turning;
+            for (dvec3 p : at) turning.push_back(glm::cross(dvec3(1, -2, 3), p));
+            return turning;
+        }();
+        Places by(at.size());
+        of.stiffness_times(at, spin, by);
+        Places stretch(at.size());
+        of.stiffness_times(at, at, stretch);
+        EXPECT_LE(largest(by), 1e-6 * largest(stretch));
+        const Places crooked = scattered(at, body.spacing, seed), a = scattered(none, 1, seed + 1),
+                     b = scattered(none, 1, seed + 2);
+        Places of_a(at.size()), of_b(at.size());
+        of.stiffness_times(crooked, a, of_a);
+        of.stiffness_times(crooked, b, of_b);
+        double ab = 0, ba = 0, aa = 0;
+        for (std::size_t i = 0; i < at.size(); ++i)
+            ab += glm::dot(a[i], of_b[i]), ba += glm::dot(b[i], of_a[i]), aa += glm::dot(a[i], of_a[i]);
+        EXPECT_LE(std::abs(ab - ba), 1e-9 * std::abs(aa));
+        EXPECT_GT(aa, 0);
+    }
+}
+
+// A bar that is stretched a little and gets thinner as Poisson's ratio says: its sides feel nothing, and its
+// ends are held by modulus x strain x area.
+TEST(Tissue, BarsHaveTheirModulusAndPoissonsRatio) {
+    for (int thick : {1, 2, 4, 8})
+        for (float poisson : {0.25f, 0.35f, 0.45f, 0.49f}) {
+            Material material = solid;
+            material.poisson = poisson;
+            const float h = 1.0f / 256;  // so that cells are cubes to the bit
+            const Body body = lattice({13, thick + 1, thick + 1}, h, material);
+            const double strain = 1e-6, modulus = material.youngs_modulus;
+            Places at;
+            for (vec3 p : body.positions)
+                at.push_back(dvec3(p) * (1.0 + strain * dvec3(1, -double(poisson), -double(poisson))));
+            const Places force = forces(body, at);
+            double end = 0, elsewhere = 0;
+            for (std::size_t i = 0; i < at.size(); ++i) {
+                const bool at_end = body.at[i].x == 0 || body.at[i].x == 12;
+                if (body.at[i].x == 12) end -= force[i].x;
+                elsewhere =
+                    std::max(elsewhere, at_end ? std::hypot(force[i].y, force[i].z) : glm::length(force[i]));
+            }
+            const double area = std::pow(thick * double(h), 2), expected = modulus * strain * area;
+            EXPECT_LE(std::abs(end / expected - 1), 0.005) << thick << ", " << poisson;
+            // What is left over, were it Poisson's ratio that is wrong by 0.001.
+            const double wrong = 0.001 * strain * modulus / (1 - 2 * double(poisson)) * double(h) * double(h);
+            EXPECT_LE(elsewhere, wrong) << thick << ", " << poisson;
+        }
+}
+
+TEST(Tissue, TheStepBoundIsBelowTheClosedFormForAnyFilling) {
+    for (float poisson : {0.25f, 0.45f, 0.49f}) {
+        Material material = solid;
+        material.poisson = poisson;
+        const float h = 0.01f;
+        for (const Body& body :
+             {lattice({9, 8, 7}, h, material),
+              lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.spacing = h, .material = material})}) {
+            const TissueCells& cells = *tissue_of(body);
+            double fill = 0;
+            for (float weight : cells.weights) fill += double(weight);
+            const double density = mass(body) / (fill * std::pow(double(h), 3));
+            const double bound = std::sqrt((12 * double(cells.lame()) + 8 * double(cells.shear())) /
+                                           (density * double(h) * double(h)));
+            const double found = highest_frequency(body);
+            EXPECT_LE(found, 1.001 * bound);
+            EXPECT_GE(found, 0.6 * bound);
+        }
+    }
+}
+
+std::size_t inside_out(const Solver& solver) {
+    return inverted_cells(solver.body(), solver.nodes().positions);
+}
+
+// Held at its lowest layer, at the automatic step.
+TEST(Tissue, ComesBackFromAnyStart) {
+    for (const float poisson : {0.45f, 0.49f}) {
+        Material material = solid;
+        material.poisson = poisson;
+        Body body = lattice({7, 7, 7}, 0.01f, material);
+        for (std::size_t i = 0; i < body.count(); ++i)
+            if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+        const Places rest = places(body);
+        const Places starts[] = {scattered(rest, 0.02, 1),
+                                 [&] {
+                                     Places folded = rest;
+                                     for (dvec3& p : folded) p.y = p.y > 0.03 ? 0.06 - p.y : p.y;
+                                     return folded;
+                                 }(),
+                                 [&] {
+                                     Places flat = rest;
+                                     for (dvec3& p : flat) p.y = 0;
+                                     return flat;
+                                 }(),
+                                 Places(rest.size(), dvec3(0.03, 0.01, 0.03))};
+        for (std::size_t s = 0; s < std::size(starts); ++s) {
+            auto solver = make_solver(body, {.gravity = vec3(0)});
+            State start{starts[s], Places(rest.size(), dvec3(0)), 0};
+            for (std::size_t i = 0; i < body.count(); ++i)
+                if (body.inverse_mass[i] == 0) start.positions[i] = rest[i];
+            solver->restore(start);
+            for (int call = 0; call < 40; ++call)
+                ASSERT_FALSE(solver->step(0.1).diverged) << poisson << " " << s;
+            EXPECT_EQ(inside_out(*solver), 0u) << poisson << ", start " << s;
+            const State end = solver->state();
+            double apart = 0;
+            for (std::size_t i = 0; i < rest.size(); ++i)
+                apart = std::max(apart, glm::length(end.positions[i] - rest[i]));
+            EXPECT_LE(apart, 1e-4) << poisson << ", start " << s;
+        }
+    }
+}
+
+// 100 presses of a ball that nobody chose: down, along and up again, at places, depths and speeds by chance.
+TEST(Tissue, ComesBackFromRandomPresses) {
+    for (const float poisson : {0.45f, 0.49f}) {
+        Material material = solid;
+        material.poisson = poisson;
+        Body body = lattice({10, 6, 9}, 0.01f, material);
+        for (std::size_t i = 0; i < body.count(); ++i)
+            if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+        const Places rest = places(body);
+        const auto solver = make_solver(body, {.gravity = vec3(0)});
+        std::mt19937 random(7);
+        auto between = [&](float low, float high) {
+            return std::uniform_real_distribution<float>(low, high)(random);
+        };
+        for (int press = 0; press < 100; ++press) {
+            const float radius = between(0.015f, 0.03f), depth = between(0.005f, 0.03f);
+            const vec3 start(between(0, 0.09f), 0.05f + radius, between(0, 0.08f)),
+                slide(between(-0.03f, 0.03f), 0, between(-0.03f, 0.03f));
+            vec3 at = start;
+            for (vec3 to : {start - vec3(0, depth, 0), start - vec3(0, depth, 0) + slide, start + slide}) {
+                const float seconds = between(0.02f, 0.2f);
+                const Press tip{at, (to - at) / seconds, radius, between(50, 2000)};
+                ASSERT_FALSE(solver->step(double(seconds), {.presses = {&tip, 1}}).diverged) << press;
+                at = to;
+            }
+        }
+        for (int call = 0; call < 30; ++call) ASSERT_FALSE(solver->step(0.1).diverged);
+        EXPECT_EQ(inside_out(*solver), 0u) << poisson;
+        const State end = solver->state();
+        double apart = 0;
+        for (std::size_t i = 0; i < rest.size(); ++i)
+            apart = std::max(apart, glm::length(end.positions[i] - rest[i]));
+        EXPECT_LE(apart, 1e-4) << poisson;
+    }
+}
+
+// A ball presses away a third of a block's height.
+TEST(Tissue, KeepsItsVolumeUnderAPress) {
+    Material material = solid;
+    material.poisson = 0.49f;
+    Body body = lattice({19, 13, 19}, 0.005f, material);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+    const auto solver = make_solver(body, {.gravity = vec3(0)});
+    const float radius = 0.03f, way = 0.022f, seconds = 1;
+    Press tip{{0.045f, 0.06f + radius, 0.045f}, {0, -way / seconds, 0}, radius, 30000};
+    ASSERT_FALSE(solver->step(double(seconds), {.presses = {&tip, 1}}).diverged);
+    tip = {tip.centre - vec3(0, way, 0), vec3(0), radius, tip.stiffness};
+    ASSERT_FALSE(solver->step(2, {.presses = {&tip, 1}}).diverged);
+    const auto now = solver->nodes().positions;
+    float top = 1;
+    double volume = 0;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.at[i].y == 12) top = std::min(top, now[i].y);
+    EXPECT_LE(top, 0.04f);
+    for (const std::array<int, 8>& cell : body.cells) {
+        dmat3 edges(0);
+        for (int k = 0; k < 8; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                edges[axis] += (k >> axis & 1 ? 0.25 : -0.25) * dvec3(now[std::size_t(cell[std::size_t(k)])]);
+        volume += glm::determinant(edges);
+    }
+    EXPECT_LE(std::abs(volume / (0.09 * 0.06 * 0.09) - 1), 0.01);
+    EXPECT_EQ(inside_out(*solver), 0u);
+}
+
+}  // namespace
+}  // namespace palpate
