@@ -24,8 +24,7 @@ struct BenchArguments {
     int rounds = 15;
 };
 
-// As the kernel names it, where it does.
-std::string processor() {
+std::string processor_name() {
     std::ifstream info("/proc/cpuinfo");
     for (std::string line; std::getline(info, line);)
         if (line.starts_with("model name"))
@@ -52,7 +51,6 @@ nlohmann::json described(const Timings& timings) {
     return {{"limits", limits}, {"cases", cases}, {"figures", figures}, {"driver", timings.driver}};
 }
 
-// By its name; where none is named, those that run by default.
 bool is_wanted(const Benchmark& benchmark, const BenchArguments& arguments) {
     const auto& names = arguments.names;
     return names.empty() ? benchmark.by_default : std::ranges::count(names, benchmark.name) > 0;
@@ -66,8 +64,9 @@ void run_benchmarks(const BenchArguments& arguments) {
         throw CLI::ValidationError("--plot", "name a benchmark that has curves: pipeline or touch");
     const unsigned cores = std::thread::hardware_concurrency();
     fmt::print(
-        "Measured on {}, {} core{}, {}; best and median of {} rounds, in brackets the medians' ratio.\n",
-        processor(), cores, cores == 1 ? "" : "s", cpu_instructions(), arguments.rounds);
+        "Measured on {}, {} core{}, {}; best and median of {} rounds; ratios are of the bests (of the "
+        "medians).\n",
+        processor_name(), cores, cores == 1 ? "" : "s", cpu_instructions(), arguments.rounds);
     nlohmann::json all;
     std::vector<Panel> panels;
     std::string title;
@@ -83,7 +82,7 @@ void run_benchmarks(const BenchArguments& arguments) {
     }
     if (!arguments.plot.empty()) write_plot(title, panels, arguments.plot);
     if (!arguments.json.empty()) {
-        all["processor"] = processor();
+        all["processor"] = processor_name();
         all["cores"] = cores;
         all["instructions"] = cpu_instructions();
         write_text(arguments.json, all.dump(2) + "\n");
@@ -97,14 +96,14 @@ void add_bench(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bench", "Time Palpate against the limits of this machine");
     std::vector<std::string> names;
     for (const Benchmark& benchmark : benchmarks()) names.push_back(benchmark.name);
-    command
-        ->add_option("names", arguments->names,
-                     "which: lattice, cloth, embed, which run if none is named; pipeline, heart, touch")
+    command->add_option("names", arguments->names, "which to run [lattice, cloth, embed]")
         ->check(CLI::IsMember(names));
-    command->add_option("--rounds", arguments->rounds, "how often each case runs, by turns")
+    command
+        ->add_option("--rounds", arguments->rounds,
+                     "how many times each case runs, interleaved with the others")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--json", arguments->json, "write the figures, JSON");
-    command->add_option("--plot", arguments->plot, "write the curves of pipeline or touch, SVG");
+    command->add_option("--json", arguments->json, "write the figures as JSON");
+    command->add_option("--plot", arguments->plot, "write the curves of pipeline or touch as SVG");
     command->callback([arguments] { run_benchmarks(*arguments); });
 }

@@ -8,20 +8,19 @@
 #include <optional>
 #include <string>
 
-/// The value of an option that names one of an enumeration; nothing if it was not given. A name that is none
-/// is wrong usage.
+/// The enumerator that an option names; nothing if the option was not given. An unknown name is wrong usage.
 template <class E>
 std::optional<E> chosen(const std::string& option, const std::string& name) {
     if (name.empty()) return std::nullopt;
     const auto value = palpate::value_of<E>(name);
     if (!value)
         throw CLI::ValidationError(
-            option, fmt::format("\"{}\" is none of {}; did you mean {}?", name, palpate::all_names<E>(),
+            option, fmt::format("\"{}\" is not one of {}; did you mean {}?", name, palpate::all_names<E>(),
                                 palpate::nearest_name<E>(name)));
     return value;
 }
 
-/// That an option is a finite number for which `holds` is true; CLI11's own checks let NaN pass.
+/// Checks that an option is a finite number for which `holds` is true; CLI11's own checks accept NaN.
 template <class Holds>
 CLI::Validator number_that(const std::string& is, Holds holds) {
     return CLI::Validator(

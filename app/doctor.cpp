@@ -28,7 +28,7 @@ namespace {
 using namespace palpate;
 using Json = nlohmann::ordered_json;
 
-// So much of something is needed (0: it is good to know), and so much is there.
+// A limit of the driver: what is needed of it (0: it is only reported) and what was found.
 struct Need {
     std::string of;
     long needed, found;
@@ -42,7 +42,7 @@ struct Finding {
     std::string problem = {};  // with its remedy; empty if there is none
 };
 
-// Has Error's words if something fails.
+// The message of the Error that an attempt throws; empty if it throws none.
 template <class Try>
 std::string problem_of(const Try& attempt) {
     try {
@@ -53,7 +53,7 @@ std::string problem_of(const Try& attempt) {
     return {};
 }
 
-// Names the first thing that is not enough.
+// Names the first limit that is too low.
 std::string shortage(const std::vector<Need>& needs) {
     for (const Need& need : needs)
         if (need.found < need.needed)
@@ -62,33 +62,33 @@ std::string shortage(const std::vector<Need>& needs) {
     return {};
 }
 
-// What the shaders of palpate/solver and palpate/render bind.
+// What the shaders of palpate/solver_gl bind.
 std::vector<Need> needs(Backend backend, const gl::Limits& has) {
-    constexpr long texels = 18 * 20'000;  // the springs of 20,000 nodes, written out
-    const Need close{"storage buffers in compute shaders", 4, has.compute_storage_buffers};
+    constexpr long texels = 18 * 20'000;  // 18 springs for each of 20,000 nodes
+    const Need compute_buffers{"storage buffers in compute shaders", 4, has.compute_storage_buffers};
     switch (backend) {
         case Backend::feedback:
-            return {{"buffers filled by transform feedback at once", 4, has.captured_buffers},
+            return {{"transform feedback buffers", 4, has.captured_buffers},
                     {"textures in vertex shaders", 9, has.vertex_textures},
-                    {"texels of a buffer", texels, has.buffer_texels},
-                    close};
+                    {"texels of a buffer texture", texels, has.buffer_texels},
+                    compute_buffers};
         case Backend::fragment:
-            return {{"float textures drawn into at once", 4, has.float_targets},
+            return {{"float colour attachments", 4, has.float_targets},
                     {"textures in fragment shaders", 15, has.fragment_textures},
-                    {"texels along a texture", 1024, has.texture_side},
-                    close};
+                    {"texels along a side of a texture", 1024, has.texture_side},
+                    compute_buffers};
         case Backend::compute:
-            return {close,
+            return {compute_buffers,
                     {"textures in compute shaders", 15, has.compute_textures},
-                    {"texels of a buffer", texels, has.buffer_texels},
-                    {"invocations of a group", 64, has.group},
-                    {"bytes that a group shares", 0, has.shared_bytes}};
+                    {"texels of a buffer texture", texels, has.buffer_texels},
+                    {"invocations of a work group", 64, has.group},
+                    {"bytes of shared memory of a work group", 0, has.shared_bytes}};
         default:
             return {};
     }
 }
 
-// A small cloth moves one step on it.
+// Moves a small cloth by one step.
 void try_out(Backend backend, const gl::Context* context) {
     const Body body = cloth(ivec2(5, 4), 0.01f, {.density = 0.15f, .damping = 2});
     const auto solver = make_solver(body, {.backend = backend}, context);
@@ -114,7 +114,7 @@ Finding look_at(Backend backend, const std::optional<gl::Context>& context) {
 }
 
 Finding look_at_mapping(const std::optional<gl::Context>& context) {
-    Finding finding{"mapping", "surfaces that follow their nodes where they are drawn"};
+    Finding finding{"mapping", "surfaces mapped in the vertex shader"};
     if (!context) {
         finding.problem = "needs OpenGL 4.5";
         return finding;
@@ -129,24 +129,23 @@ Finding look_at_mapping(const std::optional<gl::Context>& context) {
     return finding;
 }
 
-// A hand that touches nothing, for a second.
+// Runs the haptic loop for a second with a hand that touches nothing.
 Finding look_at_haptics() {
-    constexpr double late = 0.002;  // s: a device notices two ticks
+    constexpr double late = 0.002;  // s, two ticks: a device notices
     Touch hand(std::make_unique<Script>(Path{{0, vec3(0)}}), {});
     TouchLoop loop({&hand});
     sleep_until(now() + 1);
     const LoopTiming& timing = loop.timing();
     const Granted granted = loop.granted();
-    Finding finding{
-        "haptics",
-        fmt::format("{:.0f} ticks in a second, 99.9 % of them within {:.2f} ms, the longest {:.2f} ms; "
-                    "granted: {}, memory {}",
-                    double(timing.periods.count()), 1e3 * timing.periods.quantile(0.999),
-                    1e3 * timing.periods.longest(), granted.schedule,
-                    granted.memory_locked ? "locked" : "not locked")};
+    Finding finding{"haptics",
+                    fmt::format("{:.0f} ticks in a second; period p99.9 {:.2f} ms, longest {:.2f} ms; "
+                                "granted: {}, memory {}",
+                                double(timing.periods.count()), 1e3 * timing.periods.quantile(0.999),
+                                1e3 * timing.periods.longest(), granted.schedule,
+                                granted.memory_locked ? "locked" : "not locked")};
     if (!(timing.periods.quantile(0.99) <= late))
         finding.problem = fmt::format(
-            "{}; let the user have real-time priority (rtprio 90 and memlock unlimited in "
+            "{}; give the user real-time priority (rtprio 90 and memlock unlimited in "
             "/etc/security/limits.conf), or leave a core free",
             finding.found);
     return finding;
@@ -156,7 +155,7 @@ Finding look_at_window() { return {"window", "a display", {}, problem_of(check_w
 
 Finding look_at_films() {
     if (has_program("ffmpeg")) return {"films", "the program ffmpeg"};
-    return {"films", "", {}, "no program ffmpeg for --video; install ffmpeg, or ask for --images"};
+    return {"films", "", {}, "--video needs the program ffmpeg; install it, or use --images"};
 }
 
 Finding look_at_data() {
@@ -166,12 +165,14 @@ Finding look_at_data() {
             "data",
             "",
             {},
-            "PALPATE_DATA is not set, which the scenes heart and dragon want; run scripts/get-data FOLDER "
+            "PALPATE_DATA is not set, which the scenes heart and dragon need; run scripts/get-data FOLDER "
             "and export PALPATE_DATA=FOLDER"};
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
-        return {
-            "data", "", {}, fmt::format("PALPATE_DATA={} is no folder; run scripts/get-data there", folder)};
+        return {"data",
+                "",
+                {},
+                fmt::format("PALPATE_DATA={0} is not a folder; run scripts/get-data {0}", folder)};
     return {"data", folder};
 }
 
@@ -182,14 +183,14 @@ struct Diagnosis {
 
 Diagnosis diagnose() {
     Diagnosis all;
-    // First, because a window's context and one without a window do not suffer each other on one thread.
+    // First, because a window's context and a headless one conflict on one thread.
     const Finding window = look_at_window();
     std::optional<gl::Context> context;
     Finding opengl{"opengl", "", {}, problem_of([&] { context.emplace(); })};
     if (context) {
         opengl.found = fmt::format(
             "{}, {}, on {}", context->renderer(), context->version(),
-            context->software() ? "the CPU (a software driver: right, and slow)" : "a graphics card");
+            context->software() ? "the CPU (a software driver: correct but slow)" : "a graphics card");
         all.driver = {{"renderer", context->renderer()},
                       {"version", context->version()},
                       {"vendor", context->vendor()},
@@ -236,7 +237,7 @@ void print(const Diagnosis& all) {
 
 void add_doctor(CLI::App& app) {
     auto json = std::make_shared<bool>(false);
-    CLI::App* command = app.add_subcommand("doctor", "Say what this machine has of what Palpate needs");
+    CLI::App* command = app.add_subcommand("doctor", "Check this machine for what Palpate needs");
     command->add_flag("--json", *json, "as JSON");
     command->callback([json] {
         const Diagnosis all = diagnose();

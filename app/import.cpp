@@ -47,9 +47,9 @@ void import_file(ImportArguments& arguments) {
     const std::string file = std::filesystem::absolute(arguments.in).string();
     (is_volume(arguments.in) ? recipe.volume : recipe.surface) = file;
     if (recipe.volume.empty() && recipe.iso)
-        throw CLI::ValidationError("--iso", "only a volume has a value at its surface");
+        throw CLI::ValidationError("--iso", "only a volume has an isovalue");
     if (recipe.size > 0 && !arguments.units.empty())
-        throw CLI::ValidationError("--size", "beside --units, of which one must count");
+        throw CLI::ValidationError("--size", "cannot be combined with --units");
     recipe.units = chosen<Units>("--units", arguments.units);
     recipe.repair.solid = chosen<SolidBy>("--solid", arguments.solid).value_or(SolidBy::walls);
     if (arguments.rotate.size() == 3)
@@ -67,8 +67,7 @@ void import_file(ImportArguments& arguments) {
     if (!arguments.report.empty()) write_report(arguments, surface, seconds);
     for (const std::string& step : surface.steps) fmt::print("  {}\n", step);
     for (const std::string& note : surface.notes) fmt::print("  note: {}\n", note);
-    fmt::print("wrote {} in {:.1f} s, with {} MB of memory at most\n", arguments.out, seconds,
-               peak_memory() >> 20);
+    fmt::print("wrote {} in {:.1f} s, peak memory {} MB\n", arguments.out, seconds, peak_memory() >> 20);
 }
 
 }  // namespace
@@ -79,35 +78,40 @@ void add_import(CLI::App& app) {
     recipe.largest = false;
     CLI::App* command = app.add_subcommand("import", "Make a clean surface of a mesh or a volume");
     command->add_option("in", arguments->in, "a mesh, a volume, or a folder with a DICOM series")->required();
-    command->add_option("-o,--out", arguments->out, "PLY, OBJ, STL, GLB or glTF, in metres")->required();
+    command->add_option("-o,--out", arguments->out, "the surface: PLY, OBJ, STL, GLB or glTF, in metres")
+        ->required();
     command
-        ->add_option("--iso", recipe.iso,
-                     "value at a volume's surface, half-integer for integer volumes [as its values suggest]")
+        ->add_option(
+            "--iso", recipe.iso,
+            "isovalue of a volume's surface, half-integer for integer volumes [suggested by its histogram]")
         ->check(number_that("a number", [](double) { return true; }));
     command->add_flag(
         "--largest", recipe.largest,
-        "keep only the largest part by volume, where those that touch, overlap or lie in each other are one");
+        "keep only the largest part by volume; parts that touch, overlap or lie in each other count as one");
     command->add_option("--smooth", recipe.smooth, "passes of smoothing [10 for a volume, 0 for a mesh]")
         ->check(from_to(0, 1000));
     command->add_option("--faces", recipe.faces, "simplify to about so many faces")->check(zero_or_more());
     command->add_option("--units", arguments->units,
                         "of the file: m, cm, mm, um [what it states; else mm for a volume, m for a mesh]");
-    command->add_option("--size", recipe.size, "m: instead, scale it so that its longest side is this")
+    command->add_option("--size", recipe.size, "m: in place of --units, the length of its longest side")
         ->check(above_zero());
     command
-        ->add_option("--weld", recipe.repair.weld, "m: join vertices no farther apart [those in one place]")
+        ->add_option("--weld", recipe.repair.weld,
+                     "m: join vertices at most this far apart [coincident ones]")
         ->check(zero_or_more());
     command
         ->add_option("--specks", recipe.repair.specks,
                      "drop parts shorter than this fraction of the longest; 0 keeps all [0.01]")
         ->check(from_to(0, 0.999));
-    command->add_flag("--sheet", recipe.sheet, "it is cloth: let it stay open");
+    command->add_flag("--sheet", recipe.sheet, "it is cloth: leave it open");
     command->add_option(
         "--solid", arguments->solid,
-        "how it becomes a solid: walls (mended; by voxels where that fails) or voxels [walls]");
-    command->add_option("--voxel", recipe.repair.voxel, "m: of what voxels make [1/300 of its longest side]")
+        "how it becomes a solid: walls (repaired, or rebuilt by voxels if that fails) or voxels [walls]");
+    command
+        ->add_option("--voxel", recipe.repair.voxel,
+                     "m: the size of those voxels [1/300 of its longest side]")
         ->check(zero_or_more());
-    command->add_option("--report", arguments->report, "write what was done, JSON");
+    command->add_option("--report", arguments->report, "write what was done as JSON");
     command->add_option("--rotate", arguments->rotate, "degrees about x, y, z")
         ->expected(3)
         ->check(from_to(-360, 360));

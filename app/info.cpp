@@ -19,22 +19,22 @@ using Json = nlohmann::ordered_json;
 
 Json list(vec3 v) { return {v.x, v.y, v.z}; }
 
-// What a mesh may suffer from: a key, how many there are, and how a verdict names them.
-struct Ailment {
+// A kind of defect: its key in the output, how many there are, and its name in the verdict.
+struct Defect {
     const char* key;
     std::size_t count;
-    const char* name;  // of those that keep it from being a solid; nothing for the others
+    const char* name;  // null if a mesh that has it may be a solid
 };
 
-std::vector<Ailment> ailments(const Soundness& sound, const Nesting& nested, std::size_t cuts) {
+std::vector<Defect> defects(const Soundness& sound, const Nesting& nested, std::size_t cuts) {
     return {{"open_edges", sound.open_edges, "open edges"},
             {"holes", sound.holes, nullptr},
             {"bad_edges", sound.bad_edges, nullptr},
             {"crowded_edges", sound.crowded_edges, "edges with more than two faces"},
-            {"clashing_edges", sound.clashing_edges, "edges whose faces turn against each other"},
+            {"clashing_edges", sound.clashing_edges, "edges whose faces are oriented against each other"},
             {"shared_vertices", sound.shared_vertices, nullptr},
             {"unused_vertices", sound.unused_vertices, nullptr},
-            {"copied_faces", sound.copied_faces, "faces twice in one place"},
+            {"copied_faces", sound.copied_faces, "duplicate faces"},
             {"collapsed_faces", sound.collapsed_faces, "collapsed faces"},
             {"flat_faces", sound.flat_faces, nullptr},
             {"one_sided_parts", sound.one_sided_parts, "parts with one side only"},
@@ -45,15 +45,15 @@ std::vector<Ailment> ailments(const Soundness& sound, const Nesting& nested, std
             {"cutting_faces", cuts, "pairs of faces that cut through each other"}};
 }
 
-std::string verdict(const std::vector<Ailment>& all, double volume, bool searched) {
+std::string verdict(const std::vector<Defect>& all, double volume, bool searched) {
     std::string found;
-    for (const Ailment& one : all)
+    for (const Defect& one : all)
         if (one.name && one.count > 0)
             found += fmt::format("{}{} {}", found.empty() ? "" : ", ", one.count, one.name);
     if (found.empty() && volume > 0)
-        return searched ? "a solid" : "a solid, but for faces too crowded to be searched for cuts";
+        return searched ? "a solid" : "a solid, but its faces are too crowded to be searched for cuts";
     if (found.empty()) found = "it encloses nothing";
-    return "no solid: " + found + "; palpate import mends what can be mended";
+    return "not a solid: " + found + "; palpate import repairs what it can";
 }
 
 Json describe(const Mesh& mesh) {
@@ -69,8 +69,8 @@ Json describe(const Mesh& mesh) {
                   {"volume_m3", volume(mesh)},
                   {"euler", sound.euler}};
     const Intersections cuts = intersections(mesh);
-    const std::vector<Ailment> all = ailments(sound, nesting(mesh), cuts.faces.size());
-    for (const Ailment& one : all) about[one.key] = one.count;
+    const std::vector<Defect> all = defects(sound, nesting(mesh), cuts.faces.size());
+    for (const Defect& one : all) about[one.key] = one.count;
     about["longest_hole_m"] = sound.longest_hole;
     about["verdict"] = verdict(all, volume(mesh), cuts.all);
     return about;
@@ -134,8 +134,8 @@ Json look_at(const std::string& name, const std::string& units) {
         return about;
     }
     Mesh mesh = read_mesh(name, unit, &notes);
-    // Many files write a vertex once for each of its faces. What is closed as it stands may have two in one
-    // place, which hold apart what would else touch.
+    // Many files write a vertex once for each of its faces. But in a mesh that is closed already, coincident
+    // vertices separate parts that would otherwise touch.
     if (!soundness(mesh).closed()) weld(mesh);
     Json about = describe(mesh);
     if (const std::string warning = size_warning(mesh); !warning.empty()) notes.push_back(warning);
@@ -143,7 +143,7 @@ Json look_at(const std::string& name, const std::string& units) {
     return about;
 }
 
-// A bar for each bin, its length by the square root of the count, so that rare values show beside air.
+// A bar for each bin, as long as the square root of its count, so that rare values show beside air.
 void print_histogram(const Json& histogram) {
     const auto counts = histogram["counts"].get<std::vector<double>>();
     const double from = histogram["from"], to = histogram["to"];
@@ -152,7 +152,7 @@ void print_histogram(const Json& histogram) {
     std::vector<double> sums((counts.size() + each - 1) / each);
     for (std::size_t i = 0; i < counts.size(); ++i) sums[i / each] += counts[i];
     const double most = *std::max_element(sums.begin(), sums.end());
-    fmt::print("  how many voxels have which values (bars by the square root):\n");
+    fmt::print("  voxels by value (bars as long as the square root of the count):\n");
     for (std::size_t row = 0; row < sums.size(); ++row) {
         const double value = from + (to - from) * double(row * each) / double(counts.size());
         const auto length = std::size_t(std::ceil(50 * std::sqrt(sums[row] / most)));
@@ -161,7 +161,7 @@ void print_histogram(const Json& histogram) {
     }
 }
 
-// A value as a person reads it: texts without quotes, lists with spaces.
+// A value as text for people: strings without quotes, lists with spaces.
 std::string plain(const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
@@ -174,7 +174,7 @@ std::string plain(const Json& value) {
     return value.dump();
 }
 
-// What a person need not be told: that there is none of it.
+// Zero counts and empty lists, which are left out of the text.
 bool is_nothing(const Json& value) { return value == 0 || (value.is_array() && value.empty()); }
 
 }  // namespace
@@ -185,7 +185,7 @@ void add_info(CLI::App& app) {
         bool json = false;
     };
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = app.add_subcommand("info", "Say what a mesh, a volume or a scene holds, in metres");
+    CLI::App* command = app.add_subcommand("info", "Describe a mesh, a volume or a scene, in metres");
     command->add_option("file", arguments->file, "a mesh, a volume, a scene, or a shipped scene's name")
         ->required();
     command->add_option("--units", arguments->units,

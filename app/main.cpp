@@ -20,23 +20,24 @@ int complain(const char* what) {
     return failed;
 }
 
-// However it ends, the command leaves no half of a file behind.
+// However it ends, the command leaves no half-written file behind.
 void tidy(palpate::Halt halt) noexcept {
     if (halt == palpate::Halt::ended) palpate::remove_unfinished();
 }
 
-// An empty value is mostly a variable of the shell that is not set, and would pass for no option at all.
+// An empty value is usually an unset shell variable, and would count as an option that was not given.
 void refuse_empty_values(CLI::App& app) {
     for (CLI::App* command : app.get_subcommands({}))
         for (CLI::Option* option : command->get_options())
             option->check(CLI::Validator(
                 [](const std::string& value) {
-                    return value.empty() ? "nothing is given; give a value, or leave it out" : std::string();
+                    return value.empty() ? "the value is empty; give one, or leave the option out"
+                                         : std::string();
                 },
                 ""));
 }
 
-// What to do about words that the command line does not know, if anything can be said.
+// A remedy for words that the command line does not know; empty if there is none.
 std::string remedy_for_unknown(const CLI::App& app) {
     const CLI::App* command = &app;
     while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
@@ -53,7 +54,7 @@ std::string remedy_for_unknown(const CLI::App& app) {
         if (const std::string meant = palpate::nearest(word.substr(0, word.find('=')), known); !meant.empty())
             return word + ": did you mean " + meant + "?\n";
     if (words.empty() || list.empty()) return {};
-    return words.front() + " is none of " + list + "\n";
+    return words.front() + " is not one of " + list + "\n";
 }
 
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {
@@ -63,7 +64,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::signal(SIGINT, SIG_DFL);  // ignored where a shell started this in the background, but not for it
+    std::signal(SIGINT, SIG_DFL);  // a shell starts background jobs with it ignored
     palpate::let_go_at_halt();
     palpate::on_halt(tidy);
     CLI::App app("Deforms detailed surfaces in real time and lets people feel them.", "palpate");
@@ -89,7 +90,7 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         return complain(error.what());
     }
-    // Also what is still on its way to a full disk was asked for.
+    // That the disk is full may show only when buffers are flushed.
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
         return complain("cannot write the output; make room on the disk");
     return 0;

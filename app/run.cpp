@@ -29,7 +29,7 @@ struct RunArguments {
     RunSettings settings;
 };
 
-// The size as "1280x720".
+// Reads a size, such as "1280x720".
 void set_size(const std::string& text, RunSettings& settings) {
     constexpr double most = 16384;
     double width = 0, height = 0;
@@ -45,7 +45,7 @@ void set_size(const std::string& text, RunSettings& settings) {
     settings.height = int(height);
 }
 
-// The rule by its name; an option without a value has none.
+// Reads the name of a rule; an option without a value means speed.
 void set_rest(const std::string& rule, RunSettings& settings) {
     const auto known = rule.empty() ? Rest::speed : value_of<Rest>(rule);
     if (!known || *known == Rest::none) throw CLI::ValidationError("--until-rest", "choose speed or move");
@@ -93,7 +93,7 @@ void print_summary(const Report& report) {
     for (const std::string& note : report.notes) fmt::print("  note: {}\n", note);
 }
 
-// Whether anything is asked for that a window does not give: files, or an end.
+// Whether the run is to write files or to end by itself, which a window does not do.
 bool wants_files(const RunArguments& arguments) {
     const RunSettings& s = arguments.settings;
     for (const auto* file : {&s.video, &s.images, &s.report, &s.plot, &s.nodes, &s.surface, &s.sequence})
@@ -101,7 +101,7 @@ bool wants_files(const RunArguments& arguments) {
     return s.frames || s.steps || arguments.rest;
 }
 
-// Options that were given and change nothing.
+// Notes on options that were given without effect.
 std::vector<std::string> useless_options(const CLI::App& command, const Scene& scene,
                                          const RunSettings& settings) {
     std::vector<std::string> notes;
@@ -118,7 +118,7 @@ std::vector<std::string> useless_options(const CLI::App& command, const Scene& s
     return notes;
 }
 
-// What a recording did, done again; says whether it came out the same.
+// Replays a recording, and reports whether the final state is the same.
 void replay(const std::string& file) {
     const Recording recording = read_recording(file);
     Experiment experiment(prepare(recording.scene, recording.changes, terminal_progress()));
@@ -128,9 +128,9 @@ void replay(const std::string& file) {
     fmt::print("{}\n", recording.scene.name);
     print_table({{"frames", grouped(recording.frames)},
                  {"inputs", grouped((long long)recording.inputs.size())},
-                 {"state at the end", print == recording.fingerprint ? "the same to the bit" : "another"}});
+                 {"state at the end", print == recording.fingerprint ? "the same to the bit" : "different"}});
     if (print != recording.fingerprint)
-        throw Error("the state after the last frame is another than when it was recorded", file,
+        throw Error("the state after the last frame differs from the recorded one", file,
                     "replay it on the same backend, with the same files and the same version");
 }
 
@@ -149,7 +149,7 @@ void run_scene(RunArguments& arguments, const CLI::App& command) {
     const bool recorded = arguments.scene.ends_with(".json");
     if (recorded && (wants_files(arguments) || !arguments.changes.empty()))
         throw Error("a recording is replayed as it is", arguments.scene,
-                    "leave the other options out, but for --headless and --size");
+                    "leave out all options but --headless and --size");
     if (!arguments.headless && !wants_files(arguments))
         return show(arguments.scene, arguments.changes,
                     {{arguments.settings.width, arguments.settings.height}, arguments.settings.lattice});
@@ -165,7 +165,7 @@ void run_scene(RunArguments& arguments, const CLI::App& command) {
     if (report.diverged)
         throw Error(fmt::format("the motion blew up after {:.3f} s", report.simulated), arguments.scene,
                     (scene.simulation.step > 0 ? "use step = \"auto\"" : how_to_ask_less(scene, report)) +
-                        "; what was good until then is kept");
+                        "; what was written until then is kept");
 }
 
 }  // namespace
@@ -173,48 +173,49 @@ void run_scene(RunArguments& arguments, const CLI::App& command) {
 void add_run(CLI::App& app) {
     auto arguments = std::make_shared<RunArguments>();
     RunSettings& settings = arguments->settings;
-    CLI::App* command = app.add_subcommand("run",
-                                           "Open a scene, or a mesh or a volume, in a window; or run it off "
-                                           "screen, and write what is asked for");
+    CLI::App* command =
+        app.add_subcommand("run",
+                           "Open a scene, a mesh or a volume in a window; or run it off screen "
+                           "and write files");
     command->add_option("scene", arguments->scene,
                         "a TOML file, the name of a shipped scene, a mesh, a volume, or a recording (.json) "
                         "[chosen in the window]");
     command->add_flag("--headless", arguments->headless,
-                      "run it off screen, as any option that writes a file or says when to end does");
+                      "run off screen, as with any option that writes a file or sets an end");
     command->add_option("--backend", arguments->backend, "see: palpate list backends");
-    command->add_option("--threads", arguments->threads, "that simulate and map [1]")
+    command->add_option("--threads", arguments->threads, "threads for simulation and mapping [1]")
         ->check(CLI::Range(1, most_threads));
     command->add_option("--integrator", arguments->integrator, "see: palpate list integrators");
     auto* frames = command->add_option("--frames", settings.frames, "stop after so many frames of 1/60 s");
     auto* steps =
         command
             ->add_option("--steps", settings.steps,
-                         "stop after so many steps of the solver; where it chooses their length, as "
-                         "many as nothing touches take")
+                         "stop after so many steps of the solver; with an automatic step, counted as "
+                         "if nothing touched the bodies")
             ->excludes(frames);
     for (auto* count : {frames, steps}) count->check(from_to(0, 1e8));
-    command->add_option("--until-rest", arguments->rest, "end at rest, by the rule speed (no value) or move")
+    command->add_option("--until-rest", arguments->rest, "end at rest, by the rule speed or move [speed]")
         ->expected(0, 1)
         ->excludes(frames)
         ->excludes(steps);
-    command->add_option("--size", arguments->size, "of the window or the pictures, in pixels")
+    command->add_option("--size", arguments->size, "size of the window or the pictures, in pixels")
         ->capture_default_str();
-    command->add_option("--video", settings.video, "write a film, MP4 (needs ffmpeg)");
+    command->add_option("--video", settings.video, "write a film as MP4 (needs ffmpeg)");
     auto* images = command->add_option("--images", settings.images,
                                        "write PNG pictures into this folder, which is made if it is missing");
     command->add_option("--image-every", settings.image_every, "s between those pictures")
         ->needs(images)
         ->check(above_zero())
         ->capture_default_str();
-    command->add_option("--report", settings.report, "write figures, JSON");
-    command->add_option("--plot", settings.plot, "write force and indentation over time, SVG");
-    command->add_option("--nodes", settings.nodes, "write the final nodes, CSV");
+    command->add_option("--report", settings.report, "write figures as JSON");
+    command->add_option("--plot", settings.plot, "write force and indentation over time as SVG");
+    command->add_option("--nodes", settings.nodes, "write the final nodes as CSV");
     command->add_option("--surface", settings.surface,
                         "write the final surface: .ply, .obj, .stl, .vtp, .glb or .gltf");
     auto* sequence = command->add_option(
         "--sequence", settings.sequence,
         "write the surface as it moves: numbered .ply, .obj, .stl or .vtp, or one .pc2, .mdd or .glb");
-    command->add_option("--sequence-every", settings.sequence_every, "s between those [1/30]")
+    command->add_option("--sequence-every", settings.sequence_every, "s between its frames [1/30]")
         ->needs(sequence)
         ->check(above_zero());
     command->add_flag("--lattice", settings.lattice, "draw the springs over the surface");

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-/// Shows progress as one line that renews itself, on a terminal; says nothing in a pipe.
+/// Shows progress on a terminal, as one line that is rewritten in place; prints nothing into a pipe.
 palpate::Progress terminal_progress();
 
-/// Wipes that line.
+/// Clears that line.
 void end_progress();
 
 /// Prints rows of two columns, the first padded to the widest.

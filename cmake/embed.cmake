@@ -1,5 +1,5 @@
-# Writes the text of IN as one C++ raw string literal to OUT. GLSL knows no #include: the files that IN includes, named from
-# the folder ROOT, take its place.
+# Writes the text of IN as one C++ raw string literal to OUT. GLSL has no #include, so each
+# of them is replaced by the file, whose name is relative to the folder ROOT.
 file(READ ${IN} text)
 while(text MATCHES "#include \"([^\"]+)\"\n")
     set(line "${CMAKE_MATCH_0}")

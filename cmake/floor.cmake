@@ -1,6 +1,6 @@
 # palpate_floor(NAME SOURCES ... [NEEDS floors and packages in our headers] [PRIVATE packages in our .cpp only])
-# makes the static library palpate_NAME out of palpate/NAME/. A floor links only the floors it names, so the
-# house that docs/architecture.md draws is also the order in which it links.
+# makes the static library palpate_NAME out of palpate/NAME/. A floor links only the floors it names, so
+# the order of floors in docs/architecture.md is also the link order.
 function(palpate_floor name)
     cmake_parse_arguments(FLOOR "" "" "SOURCES;NEEDS;PRIVATE" ${ARGN})
     add_library(palpate_${name} STATIC ${FLOOR_SOURCES})
@@ -15,14 +15,14 @@ function(palpate_floor name)
     palpate_common_headers(palpate_${name})
 endfunction()
 
-# Our own code compiles without a warning; other people's headers come in as system headers. Another compiler, or a
-# newer one, warns of other things: that stops nobody. Both ./demo and ./check are strict, so they share objects.
+# Our own code compiles without a warning; other people's headers come in as system headers. Other and newer
+# compilers warn of other things, which must not stop a build. Both ./demo and ./check are strict, so they share objects.
 set(PALPATE_WARNINGS -Wall -Wextra -Wpedantic)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12 sees copies beyond the ends of its own std::string that never happen.
+    # GCC 12 warns falsely of copies beyond the ends of its own std::string.
     list(APPEND PALPATE_WARNINGS -Wshadow=local -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
          -Wno-stringop-overread)
-    if(CMAKE_UNITY_BUILD)  # it takes a file that another includes for a header
+    if(CMAKE_UNITY_BUILD)  # GCC takes the files of a unity build for headers
         list(APPEND PALPATE_WARNINGS -Wno-subobject-linkage)
     endif()
     if(PALPATE_STRICT AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
@@ -30,20 +30,20 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     endif()
 endif()
 
-# A root that need not set errno is one instruction. (No -ffast-math, which would allow other sums.) And no other
-# library may put its own functions in the place of ours: so a call within a file can be inlined in a shared object too.
+# A square root that need not set errno is one instruction. (No -ffast-math, which would reorder sums.) Without semantic
+# interposition, calls within a file can be inlined in a shared object too.
 set(PALPATE_CODE -fno-math-errno -fno-semantic-interposition)
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # nor need GCC look for garbage of its own, a tenth of its time, before 512 MB
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # collecting garbage only from 512 MB on saves a tenth of GCC's time
     list(APPEND PALPATE_CODE "SHELL:--param ggc-min-heapsize=524288")
 endif()
 
-# Without any optimisation GCC calls, with wide registers, what knows only narrow ones: what it makes then is wrong.
+# Without optimisation GCC passes wide registers to functions compiled for narrow ones: the code it makes is wrong.
 set(PALPATE_REGISTERS $<$<CONFIG:Debug>:-O1>)
 
-# What nearly every file includes is parsed once for all libraries, which saves a quarter of a build's time. It must be
-# compiled as they are: the libraries, not programs. The preset "debug" does without, so a file that does not include
-# what it needs does not compile there. The other presets compile eight files of a library as one, too, which saves a
-# third: names in unnamed namespaces must differ from those in the next files.
+# Precompiled headers: what nearly every file includes is parsed once for all libraries, which saves a quarter of the build
+# time. They need the same flags everywhere, so only the libraries share them, not the programs. The preset "debug" does
+# without, so each file must include what it needs. The other presets also compile eight files of a library as one (a unity
+# build), which saves a third: names in unnamed namespaces must differ from those in neighbouring files.
 function(palpate_common_headers target)
     if(target STREQUAL "palpate_base")
         target_precompile_headers(palpate_base PRIVATE <glm/glm.hpp> <fmt/format.h> <algorithm> <array> <atomic> <cmath>

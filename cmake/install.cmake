@@ -13,7 +13,7 @@ foreach(floor IN LISTS floors)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate
             FILES_MATCHING PATTERN *.h PATTERN *.inl)
 endforeach()
-if(TARGET palpate::run)  # all of it
+if(TARGET palpate::run)  # all parts are built
     install(FILES ${PROJECT_SOURCE_DIR}/palpate/palpate.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate)
 endif()
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${config})

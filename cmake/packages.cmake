@@ -1,11 +1,10 @@
-# All that the library stands on, by its parts (`palpate_parts`). The build reads this list, and so does whoever finds the
-# installed library: so the libraries that ours are linked with are found there again. `palpate_needs` is find_package or
-# find_dependency.
+# All packages that the library needs, by its parts (`palpate_parts`). The build reads this list with `palpate_needs` as
+# find_package; the installed palpateConfig.cmake, with find_dependency, so that dependents find the same packages.
 palpate_needs(glm)
 palpate_needs(fmt)
 palpate_needs(Threads)
 
-# Some of the following go on about optional programs that are not installed.
+# Some of the following report at length on optional programs that are not installed.
 set(palpate_log_level "${CMAKE_MESSAGE_LOG_LEVEL}")
 set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 
@@ -24,7 +23,7 @@ endif()
 if("files" IN_LIST palpate_parts)
     palpate_needs(ZLIB)
     palpate_needs(EXPAT)
-    pkg_check_modules(libzip REQUIRED IMPORTED_TARGET GLOBAL libzip)  # its own CMake file wants its programs too
+    pkg_check_modules(libzip REQUIRED IMPORTED_TARGET GLOBAL libzip)  # its own CMake file requires its programs too
     palpate_needs(assimp)
     pkg_check_modules(draco REQUIRED IMPORTED_TARGET GLOBAL draco)
     palpate_needs(Boost COMPONENTS iostreams)
@@ -35,10 +34,10 @@ if("opengl" IN_LIST palpate_parts)
     pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 endif()
 if("voxels" IN_LIST palpate_parts AND "files" IN_LIST palpate_parts)  # scene
-    pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET GLOBAL tomlplusplus)  # its CMake file knows the headers alone
+    pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET GLOBAL tomlplusplus)  # its CMake file offers only the header-only library
 endif()
 
-# viewer, which does without
+# viewer; optional
 pkg_check_modules(imgui IMPORTED_TARGET GLOBAL imgui)
 pkg_check_modules(glfw IMPORTED_TARGET GLOBAL glfw3)
 

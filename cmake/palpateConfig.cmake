@@ -1,4 +1,4 @@
-# find_package(palpate) in a program outside: the targets palpate::palpate (all that is there) and palpate::FLOOR (one
+# find_package(palpate) in a program outside: the targets palpate::palpate (all that was built) and palpate::FLOOR (one
 # floor with those below it: base, mesh, voxels, files, body, scene, solver, touch, gl, render, run, viewer).
 include(CMakeFindDependencyMacro)
 macro(palpate_needs)

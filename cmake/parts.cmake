@@ -1,4 +1,4 @@
-# The core is base, mesh, body and solver. What else is built PALPATE_PARTS says: `palpate_parts` lists it.
+# The core is base, mesh, body and solver. PALPATE_PARTS chooses what else is built; `palpate_parts` lists it.
 set(palpate_known_parts voxels files opengl)
 set(PALPATE_PARTS all CACHE STRING "What is built beside the core: all, core (nothing), or a list of voxels, files and opengl")
 if(PALPATE_PARTS STREQUAL "all")
@@ -9,6 +9,6 @@ else()
 endif()
 foreach(part IN LISTS palpate_parts)
     if(NOT part IN_LIST palpate_known_parts)
-        message(FATAL_ERROR "PALPATE_PARTS has ${part}; give all, core, or a list of ${palpate_known_parts}")
+        message(FATAL_ERROR "PALPATE_PARTS names an unknown part, ${part}; give all, core, or a list of ${palpate_known_parts}")
     endif()
 endforeach()

@@ -1,5 +1,5 @@
-// Any bytes as a PNG or a JPEG: an Error, or an image that is whole. A PNG's checksums are made right first:
-// no fuzzer would guess them.
+// Any bytes as a PNG or a JPEG: an Error, or a complete image. A PNG's checksums are corrected first,
+// since no fuzzer would guess them.
 #include "palpate/base/error.h"
 #include "palpate/files/image_file.h"
 
@@ -12,16 +12,15 @@
 
 namespace {
 
-// Four bytes, the highest first.
-std::uint32_t number(const std::string& bytes, std::size_t at) {
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::uint8_t(bytes[at + i]);
     return value;
 }
 
-void mend_checksums(std::string& png) {
+void correct_checksums(std::string& png) {
     for (std::size_t at = 8; at + 12 <= png.size();) {
-        const std::size_t length = number(png, at), end = at + 8 + length;
+        const std::size_t length = big_endian(png, at), end = at + 8 + length;
         if (end + 4 > png.size()) return;
         const auto sum = crc32(0, reinterpret_cast<const Bytef*>(&png[at + 4]), uInt(4 + length));
         for (std::size_t i = 0; i < 4; ++i) png[end + i] = char(sum >> (24 - 8 * i));
@@ -33,7 +32,7 @@ void mend_checksums(std::string& png) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string bytes(reinterpret_cast<const char*>(data), size);
-    mend_checksums(bytes);
+    correct_checksums(bytes);
     try {
         const palpate::Image image = palpate::parse_image(bytes, "fuzz");
         if (image.width <= 0 || image.height <= 0) std::abort();

@@ -1,4 +1,4 @@
-// Any text as a log of a device: an Error of one line, or ticks in the order of time.
+// Any text as a log of a device: an Error of one line, or ticks in chronological order.
 #include "palpate/touch/log.h"
 
 #include "palpate/base/error.h"

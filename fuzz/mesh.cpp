@@ -1,4 +1,4 @@
-// Any bytes as a mesh of the format PALPATE_FORMAT: an Error, or a mesh that is sound.
+// Any bytes as a mesh of the format PALPATE_FORMAT: an Error, or a valid mesh.
 #include "palpate/base/error.h"
 #include "palpate/files/read.h"
 

@@ -1,5 +1,5 @@
-// Any bytes as a volume of the format PALPATE_FORMAT: an Error, or a volume that is sound. Of DICOM they are
-// one file of two; the other is the slice PALPATE_BESIDE.
+// Any bytes as a volume of the format PALPATE_FORMAT: an Error, or a valid volume. For DICOM they are one
+// of two files; the other is the slice PALPATE_BESIDE.
 #include "palpate/base/error.h"
 #include "palpate/files/read.h"
 #include "palpate/mesh/histogram.h"
@@ -22,7 +22,7 @@ void demand(bool truth) {
     if (!truth) std::abort();
 }
 
-// In memory, one for each process.
+// In shared memory, a folder for each process.
 std::filesystem::path make_folder() {
     const auto folder = std::filesystem::path("/dev/shm") / ("palpate-fuzz-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);

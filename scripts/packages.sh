@@ -3,11 +3,11 @@
 build_packages=(
     g++ cmake ninja-build ccache pkg-config                                   # tools
     libglm-dev libfmt-dev                                                     # vectors, text
-    libhwy-dev                                                                # as many numbers at once as the CPU can
+    libhwy-dev                                                                # SIMD
     libgdcm-dev                                                               # DICOM
-    libopenvdb-dev libboost-iostreams-dev                                     # solids, archives
+    libopenvdb-dev libboost-iostreams-dev                                     # voxels, decompression
     libassimp-dev libmeshoptimizer-dev libstb-dev zlib1g-dev                  # surfaces, pictures
-    libexpat1-dev libzip-dev libdraco-dev                                     # surfaces that are XML, or packed
+    libexpat1-dev libzip-dev libdraco-dev                                     # surfaces in XML, archives, Draco
     libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri                           # drawing, with Mesa's software driver
     libglfw3-dev libimgui-dev fonts-dejavu-core                               # the viewer
     libtomlplusplus-dev libcli11-dev nlohmann-json3-dev                       # scenes, command line, reports
@@ -15,7 +15,7 @@ build_packages=(
 data_packages=(mricron-data)  # the brain and the head
 film_packages=(ffmpeg)
 fuzz_packages=(clang libclang-rt-14-dev)           # scripts/fuzz
-check_packages=(  # tests; the headers' pages; odd files, volumes of another writer; what palpate bench compares with; a display without a screen, and its events
+check_packages=(  # tests; API pages; test meshes and an independent writer of volumes; a comparison for palpate bench; a virtual display and its input
     libgtest-dev doxygen assimp-testmodels libinsighttoolkit5-dev libbullet-dev xvfb libxtst-dev
 )
 fresh_packages=(debootstrap git)                   # scripts/fresh

@@ -1,5 +1,5 @@
 // A flag hangs from its pole, the wind rises, and the flag flies.
-// Leaves flag.pc2, a cache for Blender, with flag.obj, the flag that it moves.
+// Writes flag.pc2, a mesh cache for Blender, and flag.obj, the mesh that it moves.
 #include <palpate/palpate.h>
 
 #include <cstdio>
@@ -10,7 +10,7 @@ int main() try {
     // 600 x 400 mm of cloth, held at its left edge.
     Body flag = cloth(ivec2(31, 21), 0.02f, {.density = 0.12f, .damping = 0.2f, .link_damping = 1e-4f});
     pin(flag, nodes_in(flag, {.low = {-0.001f, -1, -1}, .high = {0.001f, 1, 1}}));
-    // With a node a vertex the surface needs no mapping: its positions are the nodes'.
+    // With one node per vertex the surface needs no mapping: its positions are the nodes'.
     const Mesh surface = face_mesh(flag);
 
     auto solver = make_solver(flag, {.air = 1.2f});

@@ -1,6 +1,6 @@
 // An OpenGL application in which a dent is felt but not seen, until Palpate shows it. All of it is the
-// application's own, but for the 8 lines that end with "// +" or, where one was changed, "// + was:". (Its
-// picture is written by Palpate as well, in place of a window.) Leaves dent.png.
+// application's own, except 8 lines: those added end with "// +", those changed with "// + was:". (In place
+// of a window, Palpate also writes its picture.) Writes dent.png.
 #include <palpate/palpate.h>
 #include <palpate/render/gpu_dents.h>  // +
 
@@ -62,15 +62,16 @@ struct Corner {
     vec3 position, normal;
 };
 
-// A cushion: an ellipsoid of 0.1 x 0.06 x 0.08 m, in rings of corners round the y axis.
+// A cushion: an ellipsoid with half-axes of 0.1, 0.06 and 0.08 m, in rings of vertices around the y axis.
 const vec3 half_axes(0.1f, 0.06f, 0.08f);
 Corner on_the_cushion(float across, float down) {
-    const vec3 way(std::sin(down) * std::sin(across), std::cos(down), std::sin(down) * std::cos(across));
-    return {half_axes * way, glm::normalize(way / half_axes)};
+    const vec3 direction(std::sin(down) * std::sin(across), std::cos(down),
+                         std::sin(down) * std::cos(across));
+    return {half_axes * direction, glm::normalize(direction / half_axes)};
 }
 
-// A thumb and a finger, as the haptic library of the application tells of them: where they touch the cushion,
-// and how deep they have come in since.
+// A thumb and a finger as the application's haptic library reports them: where each first touched the
+// cushion, and how deep it is now, m.
 struct Touch {
     vec3 contact;
     float depth;
@@ -149,7 +150,7 @@ int main() {
     }
 
     palpate::Image shown{width, height, std::vector<std::uint8_t>(4 * width * height)};
-    for (int y = 0; y < height; ++y)  // OpenGL's rows go up
+    for (int y = 0; y < height; ++y)  // OpenGL's rows run bottom to top
         glReadPixels(0, height - 1 - y, width, 1, GL_RGBA, GL_UNSIGNED_BYTE,
                      &shown.pixels[std::size_t(4 * width * y)]);
     palpate::write_png(shown, "dent.png");

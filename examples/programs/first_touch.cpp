@@ -1,5 +1,5 @@
 // A soft body is pressed from above by a round tip:  first_touch [MESH in metres]
-// Leaves pressed.ply.
+// Writes pressed.ply.
 #include <palpate/palpate.h>
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 using namespace palpate;
 
 int main(int argc, char** argv) try {
-    // A surface of one's own, or the outside of a block of 100 x 40 x 100 mm.
+    // Your own surface, or that of a block of 100 x 40 x 100 mm.
     Mesh mesh = argc > 1 ? read_mesh(argv[1], Units::metres) : hull_mesh(lattice({41, 17, 41}, 0.0025f, {}));
 
     // What moves: a lattice of springs that fills it. The lowest tenth of it is held.
@@ -17,7 +17,7 @@ int main(int argc, char** argv) try {
     // What is seen: the surface, each vertex of which follows the cell of the lattice that it lies in.
     const Embedding skin = embed(mesh, body);
 
-    // The tip touches the top, and in a second goes in by a quarter of the body's height.
+    // The tip begins at the top, and in a second moves in by a quarter of the body's height.
     const Bounds box = bounds(mesh);
     const vec3 size = box.size(), top(box.centre().x, box.high.y, box.centre().z);
     Press tip{.velocity = {0, -0.25f * size.y, 0}, .radius = 0.2f * size.x, .stiffness = 400};

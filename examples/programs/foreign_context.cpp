@@ -1,5 +1,5 @@
-// Palpate as the guest of another OpenGL application, which has its own context, its own shaders and its own
-// motion of the nodes, on the GPU. Only how the surface follows them is Palpate's. Leaves foreign.png.
+// Palpate in another OpenGL application, which has its own context, its own shaders and its own motion of the
+// nodes on the GPU. Palpate only maps the surface onto them. Writes foreign.png.
 #include <palpate/gl/context.h>
 #include <palpate/gl/texture.h>
 #include <palpate/palpate.h>
@@ -25,7 +25,7 @@ void open_context() {
         throw Error("no context without a surface", "OpenGL", "install libegl1 and libgl1-mesa-dri");
 }
 
-// Its motion: each node turns about the y axis, the more the higher it is.
+// Its motion: a twist about the y axis, in which each node turns by an angle proportional to its height.
 const char* turning = R"(#version 450 core
 layout(local_size_x = 64) in;
 layout(std430, binding = 6) readonly buffer Rest { vec4 rest[]; };
@@ -60,7 +60,7 @@ void main() {
     colour = vec4(light * mix(vec3(0.95, 0.55, 0.15), vec3(0.15, 0.45, 0.75), band), 1);
 })";
 
-// A sponge, 60 x 120 x 60 mm: where a sum of waves is above 0.
+// A sponge, 60 x 120 x 60 mm: where a sum of waves is positive.
 Mesh sponge() {
     Volume waves;
     waves.dims = {62, 122, 62};
@@ -83,7 +83,7 @@ int main() try {
     open_context();
     const gl::Context context = gl::Context::adopt();
 
-    // The surface hangs in a cage of 4 x 7 x 4 nodes. Only where they are matters.
+    // The surface is embedded in a cage of 4 x 7 x 4 nodes, of which only the positions matter.
     const Mesh mesh = sponge();
     Body cage = lattice(ivec3(4, 7, 4), 0.02f, {});
     for (vec3& p : cage.positions) p -= vec3(0.03f, 0.06f, 0.03f);
@@ -133,7 +133,7 @@ int main() try {
     Image shown{width, height, std::vector<std::uint8_t>(4 * width * height)};
     context.read_texture(colours.name(), GL_RGBA, GL_UNSIGNED_BYTE,
                          std::as_writable_bytes(std::span(shown.pixels)));
-    for (int y = 0; y < height / 2; ++y)  // OpenGL's rows go up
+    for (int y = 0; y < height / 2; ++y)  // OpenGL's rows run bottom to top
         std::swap_ranges(&shown.pixels[4 * width * y], &shown.pixels[4 * width * (y + 1)],
                          &shown.pixels[4 * width * (height - 1 - y)]);
     write_png(shown, "foreign.png");

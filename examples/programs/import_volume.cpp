@@ -1,5 +1,5 @@
 // A volume, as from CT or MRI, becomes a clean surface:  import_volume [VOLUME ISO-VALUE]
-// Leaves surface.ply.
+// Writes surface.ply.
 #include <palpate/palpate.h>
 
 #include <cstdio>
@@ -8,7 +8,7 @@
 
 using namespace palpate;
 
-// A stand-in for a scan: a bright ball with a dent, 60 mm wide, in noise whose peaks look like tissue, too.
+// A stand-in for a scan: a bright ball with a dent, 60 mm wide, in noise whose peaks look like tissue too.
 Volume scan() {
     Volume volume;
     volume.dims = ivec3(72);

@@ -1,4 +1,4 @@
-// A device of your own, and a table that it feels; what it gives to the table is there for a simulation.
+// A device of your own feels a table; the impulses that it gives to the table could drive a simulation.
 #include "pen.h"
 #include <palpate/palpate.h>
 
@@ -7,7 +7,7 @@
 using namespace palpate;
 
 int main() try {
-    let_go_at_halt();  // whatever ends this program, no motor goes on pushing
+    let_go_at_halt();  // however this program ends, no motor goes on pushing
     const std::vector<vec3> corners = {{-0.1f, 0, 0.1f}, {0.1f, 0, 0.1f}, {0, 0, -0.1f}};
     const std::vector<uvec3> triangles = {{0, 1, 2}};
     const Touchable table[] = {{corners, triangles}};
@@ -15,13 +15,13 @@ int main() try {
     Touch touch(std::make_unique<Pen>(), {.radius = 0.003, .feels = {{.stiffness = 300}}});
     touch.feel(Patch(table));
     const TouchLoop loop({&touch});
-    double given = 0;  // N·s, downward
+    double impulse = 0;  // N·s, downward
     for (int i = 0; i < 6; ++i) {
         sleep_until(now() + 0.5);
-        for (Push push; touch.next(push);) given -= push.impulse.y;
+        for (Push push; touch.next(push);) impulse -= push.impulse.y;
         const Felt felt = touch.felt();
-        std::printf("%5.1f mm above the table, pushed up with %.2f N; so far it gave the table %.2f N s\n",
-                    1000 * felt.pose.place.y, double(felt.force.y), given);
+        std::printf("%5.1f mm above the table, pushed up with %.2f N; impulse on the table so far %.2f N s\n",
+                    1000 * felt.pose.place.y, double(felt.force.y), impulse);
     }
 } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

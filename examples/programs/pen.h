@@ -1,7 +1,7 @@
 #pragma once
-// A driver outside of Palpate: a pen on an arm that says where it is and how it leans, and can push and turn
-// the hand that holds it. Here nobody holds it and there is no arm, so it comes down by itself and draws
-// circles; where yours talks to its hardware, it says so.
+// A driver outside of Palpate: a pen on an arm that reports its position and orientation, and can exert a
+// force and a torque on the hand that holds it. This one has neither arm nor hand, so it moves down by itself
+// and draws circles; comments mark where yours talks to its hardware.
 #include <palpate/touch/device.h>
 
 #include <algorithm>
@@ -22,10 +22,10 @@ class Pen final : public palpate::Device {
                 .turns = true};
     }
 
-    // Here the hardware is opened, and its own time limit switched on.
+    // Here the hardware is opened, and its own watchdog switched on.
     void open() override { start_.reset(); }
 
-    // Here its encoders are read, or the newest that its own thread has handed over (SequenceLock).
+    // Here its encoders are read, or the newest values from its own thread (SequenceLock).
     bool read(double now, palpate::DeviceState& state) noexcept override {
         if (!start_) start_ = now;
         const double seconds = now - *start_, angle = 2 * seconds;
@@ -37,22 +37,22 @@ class Pen final : public palpate::Device {
         return true;
     }
 
-    // Here the motors are told. A write that a stop interrupts must not come after it.
+    // Here the motors are commanded. A write that a stop interrupts must not take effect after it.
     bool write(const palpate::Wrench& wrench) noexcept override {
-        stops_before_ = stops_;
-        told_ = wrench;
+        stops_before_write_ = stops_;
+        written_ = wrench;
         return true;
     }
 
     // Here their current is cut: one write to a register.
     void stop() noexcept override { ++stops_; }
 
-    // What pushes the hand now; on the thread that writes.
-    palpate::Wrench wrench() const { return stops_before_ == stops_ ? told_ : palpate::Wrench{}; }
+    // What acts on the hand now; to be called on the thread that writes.
+    palpate::Wrench wrench() const { return stops_before_write_ == stops_ ? written_ : palpate::Wrench{}; }
 
  private:
     std::optional<double> start_;  // s, of the first read
-    palpate::Wrench told_;
-    unsigned stops_before_ = 0;  // the write
+    palpate::Wrench written_;
+    unsigned stops_before_write_ = 0;
     std::atomic<unsigned> stops_ = 0;
 };

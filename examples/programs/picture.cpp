@@ -1,5 +1,5 @@
 // A picture without a window: a soft cube has fallen on a table, and its lattice shows through.
-// Leaves picture.png.
+// Writes picture.png.
 #include <palpate/palpate.h>
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 using namespace palpate;
 
 int main() try {
-    // 80 mm of jelly, 30 mm above the table and held by nothing.
+    // A cube of jelly, 80 mm wide, 30 mm above the table and free to fall.
     Body jelly = lattice({9, 9, 9}, 0.01f, {.youngs_modulus = 3000, .density = 1000, .damping = 1});
     for (vec3& p : jelly.positions) p += vec3(-0.04f, 0.03f, -0.04f);
     Mesh surface = hull_mesh(jelly);
