@@ -12,18 +12,18 @@
 #include <vector>
 
 // Deformations in closed form, bodies with a surface to deform, and how far a mapping is off. Shared by the
-// tests and the tables of bench/, so that both speak of the same.
+// tests and the tables of bench/.
 
 namespace palpate {
 
-/// Where a point goes, and the gradient of that.
+/// A map of points, and its gradient.
 struct Deformation {
     std::string name;
     std::function<dvec3(dvec3)> point;
     std::function<dmat3(dvec3)> gradient;
 
     vec3 operator()(vec3 p) const { return vec3(point(dvec3(p))); }
-    /// Where a normal at p goes: by the cofactors of the gradient.
+    /// The deformed normal n at p, by the cofactors of the gradient.
     vec3 normal(vec3 p, vec3 n) const {
         const dmat3 f = gradient(dvec3(p));
         return vec3(glm::normalize(double(n.x) * glm::cross(f[1], f[2]) +
@@ -37,7 +37,7 @@ struct Deformation {
     }
 };
 
-/// Turns about a line through the origin along the unit vector `axis`, by `angle` radians more for every
+/// Twists about the line through the origin along the unit vector `axis`, by `angle` radians for every
 /// `length` along it.
 inline Deformation twist(dvec3 axis, double length, double angle = M_PI / 2) {
     const double k = angle / length;
@@ -75,8 +75,8 @@ inline Deformation bend(dvec3 along, dvec3 toward, double length, double angle =
     return {"bend", point, gradient};
 }
 
-/// The plane z = 0 as the deformation has it, and what hovers over it still as high, straight over the same
-/// place: all that a sheet can tell.
+/// The deformation as far as a sheet at z = 0 can represent it: each point stays on the normal of the same
+/// point of the sheet, at the same height.
 inline Deformation of_a_sheet(const Deformation& d) {
     auto point = [d](dvec3 p) {
         const dmat3 f = d.gradient({p.x, p.y, 0});
@@ -108,7 +108,7 @@ inline Moved follow(const Embedding& skin, const Body& body, const std::vector<v
     return moved;
 }
 
-/// How far a surface is from where it should be. Not a number if any vertex is none.
+/// How far a surface is from where it should be. NaN if any vertex is.
 struct Misfit {
     double rms = 0, largest = 0;               // of the positions, in the body's spacings
     double mean_angle = 0, largest_angle = 0;  // of the normals, degrees
@@ -134,7 +134,7 @@ inline Misfit misfit(const Moved& moved, const std::vector<vec3>& positions, con
     return m;
 }
 
-/// A body with a surface that hangs on it, and how the two are deformed in tests.
+/// A body with an embedded surface, and how the two are deformed in tests.
 struct Carrier {
     std::string name;
     Mesh surface;
@@ -177,7 +177,7 @@ Mesh relief(vec2 size, ivec2 parts, Height height) {
     return mesh;
 }
 
-/// A quilt 0.3 m wide, which hovers half a spacing to a whole one over a cloth that reaches past it.
+/// A quilt 0.3 m wide, which hovers half a spacing to a whole one over a larger cloth.
 inline Mesh quilt() {
     return relief({0.3f, 0.3f}, {90, 90},
                   [](vec2 p) { return 0.015f + 0.005f * std::sin(60 * p.x) * std::cos(50 * p.y); });
@@ -192,7 +192,7 @@ inline Carrier quilt_on_a_cloth() {
 
 inline Carrier quilt_on_a_triangle_cloth() {
     Mesh mesh = relief({0.32f, 0.32f}, {15, 17}, [](vec2) { return 0.0f; });
-    // Uneven triangles: nodes inside are moved off their rows.
+    // Uneven triangles: inner nodes are moved off their rows.
     for (vec3& p : mesh.positions)
         if (std::max(std::abs(p.x), std::abs(p.y)) < 0.15f)
             p += 0.004f * vec3(std::sin(300 * p.x + 170 * p.y), std::sin(230 * p.x - 410 * p.y), 0);
@@ -201,8 +201,8 @@ inline Carrier quilt_on_a_triangle_cloth() {
             of_a_sheet(twist({1, 0, 0}, 0.3)), bend({1, 0, 0}, {0, 0, -1}, 0.3)};
 }
 
-/// A net of `dims` nodes of a grid about the origin, with springs along axes and diagonals, and the outside
-/// as faces.
+/// A net of the nodes of a grid about the origin, with springs along axes and diagonals, and the hull as
+/// faces.
 inline Body grid_net(ivec3 dims, float spacing) {
     const Body box = lattice(dims, spacing, {.stiffness = 100, .mass = 1});
     std::vector<Spring> springs;
@@ -214,7 +214,7 @@ inline Body grid_net(ivec3 dims, float spacing) {
     return net(positions, std::vector<float>(positions.size(), 0.1f), springs, faces);
 }
 
-/// Much surface on a net of 18 nodes, as the dragon of 2005: bumps that stand out of it.
+/// A detailed surface on a net of 18 nodes, like the dragon of 2005, with bumps beyond the net.
 inline Carrier beast_on_18_nodes() {
     Body body = grid_net({2, 3, 3}, 0.1f);
     body.spacing = 0.1f;
@@ -226,7 +226,7 @@ inline Carrier beast_on_18_nodes() {
             bend({0, 0, 1}, {1, 0, 0}, 0.32)};
 }
 
-/// Much surface on a sheet of 6 × 3 nodes through its middle, as scenes/dragon.toml has it.
+/// A detailed surface on a sheet of 6 × 3 nodes through its middle, as in scenes/dragon.toml.
 inline Carrier on_a_sheet_of_18(const std::string& name, const Mesh& surface) {
     const Bounds box = bounds(surface);
     const float spacing = 0.206f * box.size().x;

@@ -6,10 +6,10 @@
 namespace palpate::studies {
 namespace {
 
-constexpr float width = 0.01f;  // m; only the paper's axis, which has a length, depends on it
+constexpr float width = 0.01f;  // m; only the paper's axis, which is not normalised, depends on it
 
-// The surface's profile, on which the dent lies at 0: an arc of this curvature, 1/m; its normal looks up at
-// 0.
+// The profile of the undented surface: an arc of this curvature, 1/m, with the dent at 0, where its normal
+// points up.
 struct Arc {
     double curvature;
 
@@ -21,8 +21,7 @@ struct Arc {
     }
 };
 
-// Where the arc's places are when they have moved so far along their normals; and by central differences its
-// normals.
+// The arc displaced along its normals, and its own normals by central differences.
 struct DentedArc {
     Arc arc;
     double height;  // m, in the middle: below 0 a dent
@@ -38,7 +37,7 @@ struct DentedArc {
     }
 };
 
-// Section IV.B of 2007, to the letter but for what is mended.
+// Section IV.B of the 2007 paper as printed, except for the corrections asked for.
 dvec3 normal_of_2007(const Arc& arc, double along, double depth, bool negative_exponent, bool unit_axis) {
     const dvec3 place = arc.place(along), normal = arc.normal(along);
     const double d = glm::length(place), square = double(width) * width;

@@ -1,9 +1,9 @@
-// Takes files from the first byte to a pressed body, each in a process of its own, and prints
-// docs/results.md's table of real files:
-//   palpate-files FILE[=ISO] ...      a mesh, a volume (at its suggested value or ISO), a folder with a DICOM
-//   series
-// Each is brought to a longest side of 200 mm, filled with a lattice of about 8,000 nodes, held at its lowest
-// fifth, and pressed for 1,000 steps by a round tip, from where it is highest.
+// Takes files all the way to a pressed body, each in a process of its own, and prints docs/results.md's table
+// of real files:
+//   palpate-files FILE[=ISO] ...
+// FILE is a mesh, a volume (at its suggested isovalue or ISO), or a folder with a DICOM series. Each is
+// scaled to a longest side of 200 mm, filled with a lattice of about 8,000 nodes, pinned at its lowest fifth,
+// and pressed at its highest point by a round tip for 1,000 steps.
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/isolated.h"
@@ -42,12 +42,12 @@ BodyRecipe recipe_of(const std::string& argument) {
     return recipe;
 }
 
-// The deepest that the tip gets is a twentieth of the size.
 struct Pressed {
-    double seconds = 0, force = 0;
-    bool sound = true;  // all finite, nothing diverged
+    double seconds = 0, force = 0;  // force: N, the largest
+    bool sound = true;              // all finite, nothing diverged
 };
 
+// The tip gets as deep as a twentieth of the size.
 Pressed press(const Body& body, const Mesh& mesh, const Embedding& skin) {
     const vec3 top = *std::max_element(mesh.positions.begin(), mesh.positions.end(),
                                        [](vec3 a, vec3 b) { return a.y < b.y; });
@@ -103,7 +103,7 @@ int main(int count, char** arguments) {
     fmt::print(
         "| file | read | mended | vertices, faces | s | MB | nodes | 1,000 steps of pressing |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- |\n");
-    constexpr std::size_t most = std::size_t(16) << 30;  // also of what readers write in processes of theirs
+    constexpr std::size_t most = std::size_t(16) << 30;  // also for what sandboxed readers write
     bool all = true;
     for (int i = 1; i < count; ++i) try {
             const Written line =

@@ -39,7 +39,7 @@ State swing(const Body& body, Integrator integrator, int steps) {
     return solver->state();
 }
 
-// Positions and, by the time in which they swing, velocities.
+// The largest difference between positions, or between velocities scaled by the time of a swing, m.
 double distance(const State& a, const State& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.positions.size(); ++i)
@@ -52,7 +52,7 @@ Body small_lattice(const Damping& damping) {
     Body body = lattice({4, 3, 5}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
     body.damping = damping.of_nodes * 20;
     body.link_damping = damping.of_links;
-    pin(body, nodes_in(body, {vec3(-1), vec3(0.001f, 1, 1)}));  // else it would turn for ever
+    pin(body, nodes_in(body, {vec3(-1), vec3(0.001f, 1, 1)}));  // otherwise it would rotate for ever
     return body;
 }
 
@@ -62,7 +62,7 @@ void shake(Body& body, float by) {
             body.positions[i] += by * vec3(std::sin(7.0f * i), std::cos(5.0f * i), std::sin(3.0f * i));
 }
 
-// m: how far the node that is furthest from its rest place is away from it.
+// The largest distance of a node from its position at rest, m.
 double amplitude(const Body& rest, const State& state) {
     double most = 0;
     for (std::size_t i = 0; i < rest.count(); ++i)
@@ -70,8 +70,8 @@ double amplitude(const Body& rest, const State& state) {
     return most;
 }
 
-// Whether a shaken lattice shakes ever harder: in the last quarter of 6,000 steps more than in the second, or
-// twenty times as hard as at first. What has died out to rounding does not count.
+// Whether a shaken lattice is unstable: its amplitude is larger in the last quarter of 6,000 steps than in
+// the second, or reaches twenty times the first. A motion that has decayed to rounding errors does not count.
 bool grows(const Body& rest, Integrator integrator, double step) {
     const float slightly = 1e-7f;
     Body body = rest;
@@ -115,7 +115,7 @@ Limit stability_limit(Integrator integrator, const Damping& damping) {
 }
 
 Growth growth_per_step(Integrator integrator, double step) {
-    // A pair of nodes vibrates with one frequency only, and its growth can be counted.
+    // A pair of nodes vibrates with one frequency only, so its growth can be measured.
     Body body = lattice({2, 1, 1}, 0.1f, {.stiffness = 50, .mass = 0.4f});
     const double frequency = highest_frequency(body), seconds = step / frequency;
     body.positions[1].x += 1e-6f;
@@ -135,8 +135,8 @@ Growth growth_per_step(Integrator integrator, double step) {
 
 double pulse_speed(bool shear) {
     const float h = 0.01f, width = 4 * h, height = 1e-4f * h;
-    // Wide enough that its free sides are not heard in the middle before the pulse has passed. A shear pulse
-    // along y leaves the sides across z in peace.
+    // Wide enough that waves from its free sides reach the middle only after the pulse has passed. A shear
+    // pulse along y does not disturb the sides across z.
     const ivec3 dims = shear ? ivec3(64, 65, 3) : ivec3(64, 25, 25);
     const int middle = dims.x / 2;
     const double modulus = 5000, density = 1000;
@@ -147,8 +147,8 @@ double pulse_speed(bool shear) {
         const float x = (p.x - float(middle) * h) / width;
         p[shear ? 1 : 0] += height * std::exp(-0.5f * x * x);
     }
-    // It parts into two halves; the one to the right is found again by its middle, before the sides of the
-    // lattice are heard along its axis.
+    // The pulse splits in two; the right one is located by its centroid before waves from the sides reach the
+    // axis.
     const double seconds = 11 * h / speed;
     auto solver = make_exact_solver(body, {.step = seconds / 200, .gravity = vec3(0)}, 0);
     solver->step(seconds);
@@ -169,7 +169,7 @@ double cantilever_sag(int cells) {
     const float h = 0.01f, modulus = 1e5f, density = 1000;
     const int length = 10 * cells;
     const double thick = cells * double(h), far = length * double(h);
-    // Gravity so weak that the beam stays straight: a thousandth of its length.
+    // Gravity so weak that the sag is a thousandth of the length: the theory is linear.
     const double inertia = std::pow(thick, 4) / 12, shear_modulus = 0.4 * modulus, shape = 12.5 / 14.75;
     auto sag_of = [&](double gravity) {
         const double load = density * gravity * thick * thick;  // N/m
@@ -177,7 +177,7 @@ double cantilever_sag(int cells) {
                load * far * far / (2 * shape * shear_modulus * thick * thick);
     };
     const double gravity = 1e-3 * far / sag_of(1);
-    // Damped so that its slowest swing dies out without overshooting.
+    // Its lowest mode is damped critically.
     const double slowest = 3.516 / (far * far) * std::sqrt(modulus * inertia / (density * thick * thick));
     Body body = lattice({length + 1, cells + 1, cells + 1}, h,
                         {.youngs_modulus = modulus, .density = density, .damping = float(2 * slowest)});

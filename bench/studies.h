@@ -4,12 +4,12 @@
 
 #include <vector>
 
-// Measurements of the physics against what theory says. The tests hold them to bounds; palpate-tables prints
-// them for docs/results.md. All that move run on the reference solver in double.
+// Measurements of the physics against theory. The tests check them against bounds; palpate-tables prints them
+// for docs/results.md. All simulations run on the reference solver in double.
 
 namespace palpate::studies {
 
-/// The kinds of damping that a chain or a lattice is studied with.
+/// The Rayleigh damping that a chain or a lattice is studied with.
 struct Damping {
     const char* name;
     float of_nodes;  // 1/s
@@ -21,12 +21,11 @@ inline constexpr Damping dampings[] = {
 /// 9 coupled nodes in a row, of unlike masses, the first of them held.
 Body chain(const Damping& damping);
 
-/// log2 of how much smaller the error gets when the step is halved, from `steps` to 2 · `steps`, of that
-/// chain as it swings.
+/// The order of convergence that is measured on that chain as it swings: log2 of its error with `steps` steps
+/// over that with 2 · `steps`.
 double order(Integrator integrator, const Damping& damping, int steps);
 
-/// Whether the motion of a lattice whose nodes are slightly shaken grows with a step of this part of
-/// longest_step().
+/// Whether the motion of a slightly shaken lattice grows with a step of `part` times longest_step().
 bool grows(Integrator integrator, const Damping& damping, double part);
 
 /// The longest stable step of that lattice, s.
@@ -37,32 +36,33 @@ struct Limit {
 };
 Limit stability_limit(Integrator integrator, const Damping& damping);
 
-/// How much the fastest motion of that lattice grows in a step, less 1; `step` in units of 1/frequency.
+/// By how much the vibration of a pair of nodes grows in a step, less 1; `step` in units of 1/frequency.
 struct Growth {
     double measured, predicted;
 };
 Growth growth_per_step(Integrator integrator, double step);
 
-/// The speed of a plane pulse inside a lattice over √(3k/(hρ)), or of a shear pulse over √(k/(hρ)).
+/// The speed of a longitudinal plane pulse inside a lattice over √(3k/(hρ)), or of a shear pulse over
+/// √(k/(hρ)).
 double pulse_speed(bool shear);
 
-/// The sag of a square cantilever under its own weight, so many cells thick and ten times as long, over
-/// Timoshenko's.
+/// The sag under its own weight of a square cantilever, `cells` thick and ten times as long, over that of
+/// Timoshenko's beam theory.
 double cantilever_sag(int cells);
 
-/// The least and the largest energy over the first in a million undamped steps of a lattice.
+/// The least and the largest energy of a lattice in so many undamped steps, over the initial energy.
 struct Swing {
     double least, largest;
     double drift;  // of the mean, from the first tenth to the last
 };
 Swing energy_swing(Integrator integrator, int steps);
 
-/// How far normals are off those of finite differences of the surface that the same formulas displace,
-/// degrees: the most within three widths of the middle of one dent, 10 mm wide, on a sphere. By
-/// dented_normal(), and by section IV.B of 2007 as it is printed, with the sign of its exponent mended, with
-/// its axis made unit, and with both. That paper moves vertices outwards, so its normals are held to those of
-/// a bump. `width_over_radius`: 0 to 1, 0 being a plane; `depth_over_width` times it must stay under 1, where
-/// the surface would turn inside out.
+/// The largest angle, in degrees, between normals and those by finite differences of the displaced surface,
+/// within three widths of the middle of one dent, 10 mm wide, on a sphere: by dented_normal(), and by section
+/// IV.B of the 2007 paper as printed, with the sign of its exponent corrected, with its axis normalised, and
+/// with both. That paper moves vertices outwards, so its normals are compared with those of a bump.
+/// `width_over_radius`: 0 to 1, 0 being a plane; `depth_over_width` times it must stay below 1, where the
+/// surface would turn inside out.
 struct DentNormals {
     double ours = 0;
     double printed = 0, with_exponent = 0, with_axis = 0, with_both = 0;

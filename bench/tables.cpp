@@ -1,7 +1,6 @@
 // Prints the tables of docs/results.md that compare measurements with theory:
-//   palpate-tables [orders] [stability] [waves] [cantilever] [energy] [dents] [walls] [mappings]    all, if
-//   none is named
-//   palpate-tables --plot FILE                      draws the map of walls, SVG
+//   palpate-tables [TABLE...]     orders, stability, waves, cantilever, energy, dents, walls, mappings [all]
+//   palpate-tables --plot FILE    draws the map of walls as SVG
 #include "bench/studies.h"
 #include "bench/walls.h"
 #include "palpate/base/error.h"
@@ -21,8 +20,8 @@ namespace {
 using namespace palpate;
 using namespace palpate::studies;
 
-// The ranking of 2012, where it says one.
-const char* said_in_2012(Integrator integrator) {
+// How the 2012 paper ranks an integrator, if it does.
+const char* rank_in_2012(Integrator integrator) {
     return integrator == Integrator::rk4              ? "the best"
            : integrator == Integrator::explicit_euler ? "the worst"
            : integrator == Integrator::verlet         ? "stable"
@@ -58,7 +57,7 @@ void stability() {
                 fmt::print(" none: at 0.5 it grows by {:.3f} % a step | {:.3f} % |", 100 * g.predicted,
                            100 * g.measured);
             }
-            fmt::print(" {} |\n", first ? said_in_2012(integrator) : "");
+            fmt::print(" {} |\n", first ? rank_in_2012(integrator) : "");
         }
 }
 
@@ -87,7 +86,8 @@ void energies() {
 
 void dents() {
     fmt::print(
-        "| σ/R | depth/σ | dented_normal() | 2007 as printed | its exponent mended | its axis unit | both |\n"
+        "| σ/R | depth/σ | dented_normal() | 2007 as printed | exponent corrected | axis normalised | both "
+        "|\n"
         "| --- | --- | --- | --- | --- | --- | --- |\n");
     for (double width : {0.0, 0.05, 0.1, 0.2, 0.5, 1.0})
         for (double depth : {0.1, 0.3, 1.0, 2.0}) {
@@ -120,7 +120,7 @@ void walls() {
         }
 }
 
-// The curve that a function draws from 0 to `most`.
+// The graph of a function from 0 to `most`.
 Curve curve(std::string name, double most, int parts, const std::function<double(double)>& height) {
     Curve drawn{std::move(name), {}, {}};
     for (int i = 0; i <= parts; ++i) {
@@ -130,7 +130,7 @@ Curve curve(std::string name, double most, int parts, const std::function<double
     return drawn;
 }
 
-// The curves end where they do so that they keep clear of their names.
+// The curves end early enough to leave room for their names.
 void draw_walls(const std::filesystem::path& path) {
     Panel whole{"damping of the wall (N·s/m)", "stiffness (N/m)", {}}, near = whole;
     for (double rate : {500.0, 1000.0, 2000.0}) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double stiffest_tried = 1e6;  // N/m
 
-// The largest K below which something holds.
+// The largest stiffness up to which a condition holds, by doubling and bisection.
 double largest(const std::function<bool(double)>& holds) {
     double low = 0, high = 100;
     while (high < stiffest_tried && holds(high)) {
@@ -32,14 +32,14 @@ double largest(const std::function<bool(double)>& holds) {
 
 // ---- measured ----
 
-constexpr double depth = 0.005;     // m, at which hand and wall are in balance
-constexpr double shake = 0.001;     // m, by which the balance is moved at once
-constexpr double chatter = 0.0003;  // m: ten of an encoder's steps are no motion
-constexpr double shaken_at = 1;     // s; how far it swings in the second after that
-constexpr double late = 16;         // s, and in the second after that, is compared
+constexpr double depth = 0.005;     // m, of the hand in the wall at equilibrium
+constexpr double shake = 0.001;     // m, by which the equilibrium jumps
+constexpr double chatter = 0.0003;  // m: motion of ten encoder steps counts as rest
+constexpr double shaken_at = 1;     // s, when the equilibrium jumps
+constexpr double late = 16;         // s, when the swing is compared with that just after the jump
 constexpr double flung_off = 0.1;   // m
 
-// Nothing but the loop, the force law and, if any, the passivity observer.
+// Only the loop, the force law and, if any, the passivity observer.
 TouchSettings without_limits(const Wall& wall, double stiffness, double most_damping) {
     TouchSettings settings;
     settings.feels = {{.stiffness = stiffness, .damping = wall.damping}};
@@ -60,9 +60,9 @@ struct Range {
     double size() const { return most - least; }
 };
 
-// Whether a hand that was shaken swings less and less. It is pressed in so far that the wall does not let go
-// of it, nor the damper want to pull, unless the motion has grown until just that bounds it. But an encoder's
-// step makes a strong damper on a soft wall chatter, which stays small.
+// Whether the swing of a disturbed hand decays. The hand is pressed in so far that it stays in contact and
+// the damper never has to pull, unless the motion grows until that limits it. A strong damper on a
+// soft wall chatters by the encoder's steps, which is allowed as long as it is small.
 bool dies_down(const Wall& wall, double stiffness, double most_damping) {
     VirtualHandSettings person = wall.hand;
     person.peak_force = person.lasting_force = 1e9f;
@@ -80,19 +80,19 @@ bool dies_down(const Wall& wall, double stiffness, double most_damping) {
     const std::array<uvec3, 1> triangle = {uvec3(0, 1, 2)};
     const Touchable plane[] = {{corners, triangle}};
     touch.feel(Patch(plane));
-    Range early, in_the_end;
-    bool lets_go = false;  // in the end
+    Range first_second, last_second;
+    bool loses_contact = false;  // in the last second
     for (int i = 0; i < int((late + 1) * wall.rate); ++i) {
         const double now = i / wall.rate;
         touch.tick(now);
         const double place = moved.position().y;
         if (!(std::abs(place) < flung_off)) return false;
-        if (now >= shaken_at && now < shaken_at + 1) early.take(place);
+        if (now >= shaken_at && now < shaken_at + 1) first_second.take(place);
         if (now < late) continue;
-        in_the_end.take(place);
-        lets_go = lets_go || moved.force().y == 0;
+        last_second.take(place);
+        loses_contact = loses_contact || moved.force().y == 0;
     }
-    return in_the_end.size() < (lets_go ? chatter : early.size());
+    return last_second.size() < (loses_contact ? chatter : first_second.size());
 }
 
 // ---- linear ----
@@ -101,7 +101,7 @@ struct Motion {
     double place = 0, speed = 0;
 };
 
-// m x'' = force - k x - c x', by its series.
+// The solution of m x'' = force - k x - c x', by its Taylor series.
 Motion moved(const VirtualHandSettings& hand, Motion from, double force, double seconds) {
     auto rate = [&](Motion at, double push) {
         return Motion{at.speed, (push - hand.stiffness * at.place - hand.damping * at.speed) / hand.mass};
@@ -116,21 +116,21 @@ Motion moved(const VirtualHandSettings& hand, Motion from, double force, double 
     return sum;
 }
 
-// All that a tick hands on to the next: where the hand is and was, its speed, that as the loop knows it, and
-// the forces that are on their way, the newest first.
+// The state between ticks: the hand's position and velocity, its previous position, the velocity as the loop
+// filters it, and the delayed forces, the newest first.
 using State = std::vector<double>;
 
 State next(const Wall& wall, double stiffness, const State& state) {
     const double tick = 1 / wall.rate;
     const double weight = 1 - std::exp(-tick / TouchSettings{}.velocity_filter);
     const Motion at = {state[0], state[1]};
-    const double known = state[3] + weight * ((at.place - state[2]) / tick - state[3]);
+    const double filtered = state[3] + weight * ((at.place - state[2]) / tick - state[3]);
     State after(state.size());
     after[2] = at.place;
-    after[3] = known;
-    after[4] = -stiffness * at.place - wall.damping * known;
+    after[3] = filtered;
+    after[4] = -stiffness * at.place - wall.damping * filtered;
     std::copy(state.begin() + 4, state.end() - 1, after.begin() + 5);
-    // The delay ends within a tick: until then the force before is felt.
+    // The delay ends within a tick; until then the previous force acts.
     const double rest = wall.hand.delay - tick * double(state.size() - 5);
     Motion hand = moved(wall.hand, at, state.back(), rest);
     hand = moved(wall.hand, hand, after.back(), tick - rest);
@@ -139,7 +139,7 @@ State next(const Wall& wall, double stiffness, const State& state) {
     return after;
 }
 
-// The largest absolute eigenvalue, as the root of a high power's size: the matrix is squared again and again.
+// The largest absolute eigenvalue, as the root of the norm of a high power, by repeated squaring.
 double spectral_radius(std::vector<State> columns) {
     const std::size_t n = columns.size();
     double logarithm = 0, power = 1;
@@ -167,11 +167,11 @@ double stiffest_measured(const Wall& wall, double most_damping) {
 }
 
 double stiffest_linear(const Wall& wall) {
-    const auto on_their_way = std::size_t(wall.hand.delay * wall.rate + 1e-9) + 1;
+    const auto delayed = std::size_t(wall.hand.delay * wall.rate + 1e-9) + 1;
     return largest([&](double k) {
         std::vector<State> columns;
-        for (std::size_t i = 0; i < 4 + on_their_way; ++i) {
-            State one(4 + on_their_way, 0);
+        for (std::size_t i = 0; i < 4 + delayed; ++i) {
+            State one(4 + delayed, 0);
             one[i] = 1;
             columns.push_back(next(wall, k, one));
         }

@@ -1,4 +1,4 @@
-// Bullet's soft body, where libbullet-dev was there when Palpate was built.
+// Bullet's soft body, if libbullet-dev was installed when Palpate was built.
 #include "bench/speed/speed.h"
 
 #ifdef PALPATE_BULLET
@@ -15,7 +15,7 @@ namespace palpate::speed {
 #ifdef PALPATE_BULLET
 namespace {
 
-// As fast as it can be set: one iteration over the links, and no collisions.
+// In its fastest configuration: one iteration over the links, and no collisions.
 struct Soft {
     btSoftBodyWorldInfo world;
     std::unique_ptr<btSoftBody> body;
@@ -47,7 +47,7 @@ struct Soft {
 
 std::vector<Case> bullet(const Body& body) {
     auto soft = std::make_shared<Soft>(body);
-    soft->step();  // else its links have no weights yet, and it skips them
+    soft->step();  // before its first step its links have no weights, and it skips them
     const double nodes = double(body.count()), links = double(soft->body->m_links.size()) / nodes;
     auto timed = [=](int times, void (Soft::*once)()) {
         return [=] {

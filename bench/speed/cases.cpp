@@ -24,7 +24,7 @@ Simulation with(Backend backend, int threads = 1, Integrator integrator = Integr
     return {.backend = backend, .threads = threads, .integrator = integrator};
 }
 
-// The same surface with its vertices in no order.
+// The same surface with its vertices in random order.
 Mesh shuffled(const Mesh& mesh) {
     std::vector<unsigned> place(mesh.positions.size());
     std::iota(place.begin(), place.end(), 0u);
@@ -36,7 +36,7 @@ Mesh shuffled(const Mesh& mesh) {
     return to;
 }
 
-// Every link whole, as in 2005; one edge pinned.
+// Every link at its full share, as in 2005; one edge pinned.
 Body whole_box(int nodes) {
     Body box = lattice(ivec3(nodes), 0.01f, tissue);
     GridSprings& stencil = *box.grid();
@@ -50,28 +50,28 @@ Body whole_box(int nodes) {
     return box;
 }
 
-// The surface carried by nodes that do not move: that costs as much.
-Case carrying(std::string name, const Mesh& surface, const Body& body, Mapping mapping, int threads,
-              double bytes, bool normals = true) {
-    struct Carried {
+// Maps a surface onto nodes that do not move, which costs the same.
+Case mapping_of(std::string name, const Mesh& surface, const Body& body, Mapping mapping, int threads,
+                double bytes, bool normals = true) {
+    struct Mapped {
         Embedding skin;
-        std::vector<vec3> nodes, normals, positions, turned;
+        std::vector<vec3> nodes, node_normals, positions, normals;
         Team team;
-        explicit Carried(int members) : team(members) {}
+        explicit Mapped(int members) : team(members) {}
     };
-    auto all = std::make_shared<Carried>(threads);
+    auto all = std::make_shared<Mapped>(threads);
     all->skin = embed(surface, body, mapping);
     all->nodes = body.positions;
-    all->normals = approximate_normals(body, body.positions);
+    all->node_normals = approximate_normals(body, body.positions);
     const double vertices = double(surface.positions.size());
     return {std::move(name),
             [=] {
                 const double start = palpate::now();
                 Team* const team = threads > 1 ? &all->team : nullptr;
-                const Nodes nodes{all->nodes, all->normals};
+                const Nodes nodes{all->nodes, all->node_normals};
                 for (int i = 0; i < 10; ++i)
                     if (normals)
-                        deform(all->skin, nodes, all->positions, all->turned, nullptr, team);
+                        deform(all->skin, nodes, all->positions, all->normals, nullptr, team);
                     else
                         deform(all->skin, nodes, all->positions, team);
                 return Work{palpate::now() - start, 10 * vertices};
@@ -152,16 +152,16 @@ std::vector<Case> embed_cases() {
     std::vector<Case> cases;
     for (int threads : {1, 2}) {
         const std::string on = threads > 1 ? ", 2 threads" : "";
+        cases.push_back(mapping_of("trilinear" + on, surface, body, Mapping::trilinear, threads,
+                                   sizeof(InCell) + written));
         cases.push_back(
-            carrying("trilinear" + on, surface, body, Mapping::trilinear, threads, sizeof(InCell) + written));
-        cases.push_back(
-            carrying("frames" + on, surface, body, Mapping::frames, threads, sizeof(OnFrames) + written));
-        cases.push_back(carrying("trilinear, positions alone" + on, surface, body, Mapping::trilinear,
-                                 threads, sizeof(InCell) + sizeof(vec3), false));
-        cases.push_back(carrying("interpolated" + on, surface, body, Mapping::interpolated, threads,
-                                 sizeof(OnTriangle) + written));
-        cases.push_back(carrying("constant" + on, surface, body, Mapping::constant, threads,
-                                 sizeof(OnTriangle) + written));
+            mapping_of("frames" + on, surface, body, Mapping::frames, threads, sizeof(OnFrames) + written));
+        cases.push_back(mapping_of("trilinear, positions alone" + on, surface, body, Mapping::trilinear,
+                                   threads, sizeof(InCell) + sizeof(vec3), false));
+        cases.push_back(mapping_of("interpolated" + on, surface, body, Mapping::interpolated, threads,
+                                   sizeof(OnTriangle) + written));
+        cases.push_back(mapping_of("constant" + on, surface, body, Mapping::constant, threads,
+                                   sizeof(OnTriangle) + written));
     }
     return cases;
 }

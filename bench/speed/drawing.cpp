@@ -39,7 +39,7 @@ bool works(Backend backend, const gl::Context* context) {
 
 }  // namespace
 
-Machine::Machine() {
+Hardware::Hardware() {
     try {
         context.emplace();
     } catch (const Error& error) {
@@ -55,7 +55,7 @@ Machine::Machine() {
     }
 }
 
-std::string Machine::driver() const {
+std::string Hardware::driver() const {
     if (!context) return "OpenGL is not available: nothing was drawn, and nothing moved on a GPU.";
     return fmt::format(
         "OpenGL by {}, {}. {}", context->renderer(), context->version(),
@@ -104,16 +104,16 @@ Case repeating(std::string name, std::function<void()> once, const gl::Context* 
         if (context) context->finish();
         return now() - start;
     };
-    go(2);  // a driver may compile meanwhile
+    go(2);  // warm-up: a driver may compile shaders
     const int times = times_for(go(2) / 2);
     return {std::move(name), [=] { return Work{go(times), double(times)}; }};
 }
 
-Case steps(std::string name, const Body& body, const Machine& machine, const Machine::Mover& mover,
+Case steps(std::string name, const Body& body, const Hardware& hardware, const Hardware::Mover& mover,
            Integrator integrator) {
     Case timed = stepping(std::move(name), body,
                           {.backend = mover.backend, .threads = mover.threads, .integrator = integrator},
-                          machine.gl());
+                          hardware.gl());
     const double nodes = double(body.count());
     timed.run = [run = std::move(timed.run), nodes] {
         const Work work = run();

@@ -11,10 +11,10 @@
 
 namespace palpate::speed {
 
-/// What this machine moves bodies with, and draws with.
-struct Machine {
-    /// Tries every backend. Says on standard error what is missing.
-    Machine();
+/// The backends that work on this hardware, and its OpenGL context.
+struct Hardware {
+    /// Tries every backend. Reports on standard error what is missing.
+    Hardware();
 
     const gl::Context* gl() const { return context ? &*context : nullptr; }
     std::string driver() const;
@@ -28,12 +28,12 @@ struct Machine {
     std::vector<Mover> movers;  // the cpu's with one thread, and with all
 };
 
-/// Draws nodes as points of a pixel into a picture of 1024².
+/// Draws nodes as points of one pixel into a texture of 1024².
 class Points {
  public:
     explicit Points(const Body& body);
 
-    /// From the GPU's memory if they are there already, else from the host's.
+    /// From the GPU's memory if the nodes are there already, else from the host's.
     void draw(const Solver& solver);
 
  private:
@@ -44,11 +44,11 @@ class Points {
     gl::Buffer sent_;
 };
 
-/// What a call of `once` does, again and again, at the end of which the GPU is waited for.
+/// Repeated calls of `once`, and then a wait for the GPU.
 Case repeating(std::string name, std::function<void()> once, const gl::Context* context);
 
 /// `stepping`, counted in steps of the whole body.
-Case steps(std::string name, const Body& body, const Machine& machine, const Machine::Mover& mover,
+Case steps(std::string name, const Body& body, const Hardware& hardware, const Hardware::Mover& mover,
            Integrator integrator);
 
 /// 64 MB from one buffer of the GPU to another: bytes read and written.

@@ -72,13 +72,13 @@ Subject the_dragon() {
     }
 }
 
-Simulation with(const Machine::Mover& mover) {
+Simulation with(const Hardware::Mover& mover) {
     return {.backend = mover.backend, .threads = mover.threads, .step = one_step, .force = true};
 }
 
-bool on_card(const Solver& solver) { return solver.gpu_nodes().positions != 0; }
+bool on_gpu(const Solver& solver) { return solver.gpu_nodes().positions != 0; }
 
-// A surface that is drawn where a solver's nodes are: mapped on the GPU if they are there, else on the CPU.
+// A surface drawn on a solver's nodes: mapped on the GPU if the nodes are there, else on the CPU.
 class Shown {
  public:
     Shown(Renderer& renderer, const Mesh& surface, const Body& body, Mapping mapping,
@@ -86,13 +86,13 @@ class Shown {
         : renderer_(renderer),
           solver_(std::move(solver)),
           skin_(embed(surface, body, mapping)),
-          mesh_(on_card(*solver_) ? renderer.add(surface, skin_) : renderer.add(surface)),
+          mesh_(on_gpu(*solver_) ? renderer.add(surface, skin_) : renderer.add(surface)),
           team_(threads),
           box_(bounds_of(surface.positions)) {
         look(0, 2.5f);
     }
 
-    /// From so many times its size away, and so many beside its middle.
+    /// Places the camera `away` times the surface's size in front of it, and `beside` times off its centre.
     void look(float beside, float away) {
         const float size = glm::length(box_.size());
         picture_.camera.look_at = box_.centre() + vec3(beside * size, 0, 0);
@@ -106,7 +106,7 @@ class Shown {
 
     void draw() {
         Surface shown{.mesh = mesh_};
-        if (on_card(*solver_)) {
+        if (on_gpu(*solver_)) {
             shown.gpu_nodes = solver_->gpu_nodes();
         } else {
             deform(skin_, solver_->nodes(), positions_, normals_, nullptr, &team_);
@@ -128,13 +128,13 @@ class Shown {
     Picture picture_;
 };
 
-// Where a case stands in the tables; its name is all three.
-struct Place {
+// The cell of a case in the tables; its name is all three.
+struct Cell {
     std::string table, row, column;
     std::string name() const { return table + " / " + row + " / " + column; }
 };
 
-Place place_of(const std::string& name) {
+Cell cell_of(const std::string& name) {
     const auto first = name.find(" / "), last = name.rfind(" / ");
     return {name.substr(0, first), name.substr(first + 3, last - first - 3), name.substr(last + 3)};
 }
@@ -144,10 +144,10 @@ std::string described(const Subject& subject, const Mesh& surface) {
                        surface.triangles.size());
 }
 
-// One that keeps the nodes where they are, for frames in which nothing moves.
-const Machine::Mover* first(const Machine& machine, bool gpu) {
-    const Machine::Mover* found = nullptr;
-    for (const auto& mover : machine.movers) {
+// Where the nodes are for frames in which nothing moves: the first of the GPU, or the last of the CPU.
+const Hardware::Mover* mover_at_rest(const Hardware& hardware, bool gpu) {
+    const Hardware::Mover* found = nullptr;
+    for (const auto& mover : hardware.movers) {
         const bool here = mover.backend == Backend::cpu;
         if (gpu ? !here && mover.backend != Backend::reference && !found : here) found = &mover;
     }
@@ -162,36 +162,36 @@ const std::string culling_table =
 const std::string whole_table = "Frames a second with 15 steps a frame (2005: 25)";
 
 Timings run(int rounds) {
-    const Machine machine;
+    const Hardware hardware;
     const Subject heart = the_heart(), dragon = the_dragon();
     std::vector<Case> cases;
     const Subject box{"a box of 27³", lattice(ivec3(27), 0.01f, flesh), {}};
     for (const Subject* subject : {&heart, &box})
-        for (const auto& mover : machine.movers)
+        for (const auto& mover : hardware.movers)
             cases.push_back(
-                steps(Place{step_table, fmt::format("{} ({} nodes)", subject->about, subject->body.count()),
-                            mover.name}
+                steps(Cell{step_table, fmt::format("{} ({} nodes)", subject->about, subject->body.count()),
+                           mover.name}
                           .name(),
-                      subject->body, machine, mover, Integrator::verlet));
+                      subject->body, hardware, mover, Integrator::verlet));
     std::optional<Renderer> renderer;
-    if (machine.gl()) renderer.emplace(Offscreen(), machine.gl());
-    // Frames that stand still, and frames with steps.
+    if (hardware.gl()) renderer.emplace(Offscreen(), hardware.gl());
+    // Frames in which nothing moves, and frames with steps.
     auto add = [&](const std::string& table, const Subject& subject, const Mesh& surface, Mapping mapping,
-                   const Machine::Mover& mover, const std::string& column, bool moves) {
-        std::shared_ptr<Solver> solver = make_solver(subject.body, with(mover), machine.gl());
+                   const Hardware::Mover& mover, const std::string& column, bool moves) {
+        std::shared_ptr<Solver> solver = make_solver(subject.body, with(mover), hardware.gl());
         auto shown =
             std::make_shared<Shown>(*renderer, surface, subject.body, mapping, solver, mover.threads);
         const std::string row = described(subject, surface) + ", " + std::string(name_of(mapping));
         cases.push_back(repeating(
-            Place{table, row, column}.name(),
+            Cell{table, row, column}.name(),
             [=] {
                 if (moves) shown->step();
                 shown->draw();
             },
-            machine.gl()));
+            hardware.gl()));
     };
     for (bool gpu : {false, true}) {
-        const Machine::Mover* still = first(machine, gpu);
+        const Hardware::Mover* still = mover_at_rest(hardware, gpu);
         if (!renderer || !still) continue;
         const std::string column = gpu ? "GPU" : still->name;
         for (const Mesh& surface : heart.surfaces)
@@ -199,11 +199,11 @@ Timings run(int rounds) {
         for (Mapping mapping : {Mapping::constant, Mapping::interpolated})
             add(frame_table, dragon, dragon.surfaces[0], mapping, *still, column, false);
     }
-    if (const Machine::Mover* still = first(machine, true); renderer && still)
+    if (const Hardware::Mover* still = mover_at_rest(hardware, true); renderer && still)
         for (const auto& [where, beside, away] : {std::tuple{"all of it in the picture", 0.0f, 2.5f},
                                                   {"a third of it", 0.5f, 0.8f},
                                                   {"none of it", 5.0f, 2.5f}}) {
-            std::shared_ptr<Solver> solver = make_solver(heart.body, with(*still), machine.gl());
+            std::shared_ptr<Solver> solver = make_solver(heart.body, with(*still), hardware.gl());
             auto shown =
                 std::make_shared<Shown>(*renderer, heart.surfaces[1], heart.body, Mapping::frames, solver, 1);
             shown->look(beside, away);
@@ -214,19 +214,19 @@ Timings run(int rounds) {
                             of.vertices_drawn, of.vertices);
             for (bool culls : {false, true})
                 cases.push_back(repeating(
-                    Place{culling_table, row, culls ? "culled" : "all drawn"}.name(),
+                    Cell{culling_table, row, culls ? "culled" : "all drawn"}.name(),
                     [=] {
                         shown->cull(culls);
                         shown->draw();
                     },
-                    machine.gl()));
+                    hardware.gl()));
         }
-    for (const auto& mover : machine.movers)
+    for (const auto& mover : hardware.movers)
         for (Mapping mapping : {Mapping::constant, Mapping::interpolated})
             if (renderer) add(whole_table, heart, heart.surfaces[0], mapping, mover, mover.name, true);
     Timings timings = time(std::move(cases), rounds, 0);
     for (Case& of : timings.cases) of.run = {};  // before the context ends
-    timings.driver = machine.driver();
+    timings.driver = hardware.driver();
     return timings;
 }
 
@@ -235,7 +235,7 @@ void note(std::vector<std::string>& list, const std::string& name) {
 }
 
 // The CPU, or a picture without culling.
-bool is_compared_with(const std::string& column) {
+bool is_baseline(const std::string& column) {
     return column.starts_with("cpu") || column == "reference" || column == "all drawn";
 }
 
@@ -244,9 +244,9 @@ std::string text(const Timings& timings) {
     for (const std::string& table : {step_table, frame_table, culling_table, whole_table}) {
         std::vector<std::string> rows, columns;
         for (const Case& of : timings.cases)
-            if (const Place place = place_of(of.name); place.table == table) {
-                note(rows, place.row);
-                note(columns, place.column);
+            if (const Cell cell = cell_of(of.name); cell.table == table) {
+                note(rows, cell.row);
+                note(columns, cell.column);
             }
         if (rows.empty()) continue;
         std::vector<std::string> cells{""};
@@ -255,12 +255,12 @@ std::string text(const Timings& timings) {
         text += "\n" + table + ":\n\n" + head(cells);
         for (const std::string& which : rows) {
             cells = {which};
-            double slower = 0, faster = 0;  // the best of what is held against each other
+            double slower = 0, faster = 0;  // the best rates of the two sides
             for (const std::string& column : columns) {
-                const std::string name = Place{table, which, column}.name();
+                const std::string name = Cell{table, which, column}.name();
                 const Rate* rate = timings.find(name);
                 if (rate) {
-                    double& side = is_compared_with(column) ? slower : faster;
+                    double& side = is_baseline(column) ? slower : faster;
                     side = std::max(side, rate->best);
                 }
                 cells.push_back(rate && table == whole_table

@@ -1,4 +1,4 @@
-// What this machine can do at best, with each instruction set.
+// The peak rates of this machine, with each instruction set.
 #include "bench/speed/speed.h"
 #include "palpate/base/clock.h"
 #include "palpate/base/team.h"
@@ -19,9 +19,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::ScalableTag<float>;
 using V = hn::Vec<Lanes>;
 
-// The springs of nodes that never leave the registers, from a few neighbours that never leave the first
-// cache: subtract, square, estimate the reciprocal root, one step of Newton's, add up. Two chains, so that
-// none waits.
+// The springs of nodes that stay in the registers, to a few neighbours that stay in the first-level cache:
+// subtract, square, estimate the reciprocal square root, one Newton step, accumulate. Two independent chains
+// hide the latency.
 double links(int times) {
     constexpr std::size_t packs = 32;
     const Lanes d;

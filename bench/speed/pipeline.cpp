@@ -1,6 +1,5 @@
 // The tables of the 2012 paper, section 5.
 #include "bench/speed/drawing.h"
-#include "palpate/solver/stability.h"
 
 #include <fmt/format.h>
 
@@ -29,15 +28,14 @@ std::string step_of(int grid, const std::string& mover) {
 std::string copy_of(int grid) { return fmt::format("{}², copying on the GPU", grid); }
 
 // A step, and its nodes drawn.
-Case frame(int grid, const Body& body, double frequency, const Machine& machine,
-           const Machine::Mover& mover, Integrator integrator) {
+Case frame(int grid, const Body& body, const Hardware& hardware, const Hardware::Mover& mover,
+           Integrator integrator) {
     const Simulation how{.backend = mover.backend,
                          .threads = mover.threads,
                          .integrator = integrator,
                          .step = frame_step,
-                         .force = true,
-                         .shortest_step = 0};
-    std::shared_ptr<Solver> solver = make_solver(body, how, machine.gl(), frequency);
+                         .force = true};
+    std::shared_ptr<Solver> solver = make_solver(body, how, hardware.gl());
     auto points = std::make_shared<Points>(body);
     return repeating(
         frame_of(grid, mover.name, integrator),
@@ -45,7 +43,7 @@ Case frame(int grid, const Body& body, double frequency, const Machine& machine,
             solver->step(frame_step);
             points->draw(*solver);
         },
-        machine.gl());
+        hardware.gl());
 }
 
 void add(Timings& all, Timings more) {
@@ -53,11 +51,11 @@ void add(Timings& all, Timings more) {
     all.rates.insert(all.rates.end(), more.rates.begin(), more.rates.end());
 }
 
-// Cases that are held against each other run by turns; of others the memory is free again.
+// Cases that are compared are interleaved; the memory of the others is freed before.
 Timings run(int rounds) {
-    const Machine machine;
+    const Hardware hardware;
     Timings all;
-    all.driver = machine.driver();
+    all.driver = hardware.driver();
     auto time_and_drop = [&](std::vector<Case> cases) {
         Timings timed = time(std::move(cases), rounds, 0);
         for (Case& of : timed.cases) of.run = {};
@@ -65,21 +63,20 @@ Timings run(int rounds) {
     };
     for (int grid : grids) {
         const Body body = cloth(ivec2(grid), 0.01f, linen);
-        const double frequency = highest_frequency(body);
         std::vector<Case> cases;
-        for (const auto& mover : machine.movers)
-            cases.push_back(steps(step_of(grid, mover.name), body, machine, mover, euler));
-        if (machine.gl()) {
-            cases.push_back(copying_on_gpu(copy_of(grid), *machine.gl()));
-            for (const auto& mover : machine.movers)
-                cases.push_back(frame(grid, body, frequency, machine, mover, euler));
+        for (const auto& mover : hardware.movers)
+            cases.push_back(steps(step_of(grid, mover.name), body, hardware, mover, euler));
+        if (hardware.gl()) {
+            cases.push_back(copying_on_gpu(copy_of(grid), *hardware.gl()));
+            for (const auto& mover : hardware.movers)
+                cases.push_back(frame(grid, body, hardware, mover, euler));
         }
         time_and_drop(std::move(cases));
-        for (const auto& mover : machine.movers) {
-            if (!machine.gl() || mover.backend == Backend::reference) continue;
+        for (const auto& mover : hardware.movers) {
+            if (!hardware.gl() || mover.backend == Backend::reference) continue;
             cases.clear();
             for (const auto& [integrator, name] : names(Integrator{}))
-                if (integrator != euler) cases.push_back(frame(grid, body, frequency, machine, mover, integrator));
+                if (integrator != euler) cases.push_back(frame(grid, body, hardware, mover, integrator));
             time_and_drop(std::move(cases));
         }
     }
@@ -118,9 +115,8 @@ std::string text(const Timings& timings) {
     };
     std::string text = fmt::format(
         "{}\n\nMilliseconds a frame: one step of a cloth of 12 springs a node, and its nodes drawn as "
-        "points; best "
-        "and in brackets median. The GPU is waited for after some frames, not after each. From the CPU "
-        "positions are sent, on the GPU they stay.\n\n",
+        "points; best, and median in brackets. The GPU is waited for after several frames, not after "
+        "each. The CPU's positions are uploaded, the GPU's stay there.\n\n",
         timings.driver);
     text += "Table 1: unoptimised and optimised CPU, explicit Euler.\n\n";
     text +=
@@ -152,11 +148,9 @@ std::string text(const Timings& timings) {
     const std::vector<std::string> movers{"reference", "cpu, 1 thread", all,
                                           "feedback",  "fragment",      "compute"};
     text +=
-        "A step alone, explicit Euler, many in a call, in milliseconds; and for the GPU how the bytes that "
-        "it has to "
-        "move (80 a node, nothing fetched twice) go by, against a copy of 64 MB from buffer to "
-        "buffer in the "
-        "same run.\n\n";
+        "A step alone, explicit Euler, many in a call, in milliseconds; and for the GPU its memory "
+        "throughput (80 bytes a node, nothing fetched twice) over that of a copy of 64 MB from buffer to "
+        "buffer in the same run.\n\n";
     columns = {"Grid"};
     columns.insert(columns.end(), movers.begin(), movers.end());
     for (const char* gpu : {"feedback", "fragment", "compute"})

@@ -20,16 +20,16 @@ Rate rate_of(std::vector<double> rates) {
     return {rates.back(), rates[rates.size() / 2]};
 }
 
-// Read or written by the passes of a step, with nothing fetched twice: the state where forces are taken, that
-// where the step began, the sum, the shares of 18 links (eight bytes) and the inverse mass. On a GPU all is
-// in fours.
+// Read or written by the passes of a step, with nothing fetched twice: the state at which forces are taken,
+// that at which the step began, the sum, the shares of 18 links (eight bytes) and the inverse mass. On a GPU
+// everything is padded to four floats.
 double bytes_of_a_step(Integrator integrator, bool gpu) {
     const double state = gpu ? 32 : 24, fixed = gpu ? 16 : 12;
     double bytes = 0;
     for (const Stage& stage : scheme(integrator).stages) {
         const bool first = &stage == &scheme(integrator).stages.front();
         bytes += state + fixed + state;                             // at, next
-        bytes += first ? 0 : state;                                 // where it began, or the sum
+        bytes += first ? 0 : state;                                 // where the step began, or the sum
         bytes += stage.part > 0 ? (first ? state : 2 * state) : 0;  // to the sum
     }
     return bytes;
@@ -53,7 +53,7 @@ Timings time(std::vector<Case> cases, int rounds, int limits) {
         const Work done = work();
         into.push_back(done.amount / done.seconds);
     };
-    // One round goes before, since a graphics driver may compile anew for what another case left set.
+    // A warm-up round: a graphics driver may recompile shaders for the state that another case left.
     for (const Case& of : cases) of.run();
     for (int round = 0; round < rounds; ++round) {
         for (std::size_t t = 0; t < most; ++t) {
@@ -84,7 +84,7 @@ Case stepping(std::string name, const Body& body, const Simulation& how, const g
         if (context) context->finish();
         return now() - start;
     };
-    go(4);  // a driver may compile meanwhile
+    go(4);  // warm-up: a driver may compile shaders
     const int steps = std::max(times_for(go(4) / 4), 2);
     double forces = 0;  // a step
     for (const Stage& stage : scheme(simulation.integrator).stages) forces += stage.kick > 0;

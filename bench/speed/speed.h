@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-// How fast Palpate is: against what this machine can do at best, and against others. `palpate bench` prints
-// it.
+// The speed of Palpate against the limits of this machine and against Bullet, printed by `palpate bench`.
 
 namespace palpate::gl {
 class Context;
@@ -17,10 +16,10 @@ class Context;
 
 namespace palpate::speed {
 
-/// What all measured cloths are of.
+/// The material of all measured cloths.
 inline const ClothSettings linen{.density = 0.15f, .damping = 2};
 
-/// What one run of something did.
+/// What one run of a case did.
 struct Work {
     double seconds = 0;
     double amount = 0;  // in units of its own: node-steps, vertices, links, bytes
@@ -29,10 +28,10 @@ struct Work {
 /// Something to time.
 struct Case {
     std::string name;
-    std::function<Work()> run;  // some of it, for a twentieth of a second or so
-    double links = 0;           // evaluated for a unit, those that a node lacks included: they cost as much
-    double bytes = 0;           // that have to be read or written for a unit
-    double memory = 0;          // bytes that a unit's node keeps
+    std::function<Work()> run;  // for a twentieth of a second or so
+    double links = 0;           // evaluated per unit, with those missing at a rim, which cost as much
+    double bytes = 0;           // that must be read or written per unit
+    double memory = 0;          // bytes kept per node
     int threads = 1;
 };
 
@@ -41,8 +40,7 @@ struct Rate {
     double best = 0, median = 0;
 };
 
-/// What became of cases, and beside them of the machine's own limits: all ran by turns, so that each met the
-/// same noise.
+/// The measured rates of cases and of the machine's limits, interleaved so that each meets the same noise.
 struct Timings {
     std::vector<Case> cases;
     std::vector<Rate> rates;                // of the cases
@@ -52,30 +50,30 @@ struct Timings {
         std::string name;  // with its unit
         double value;
     };
-    std::vector<Figure> figures = {};  // what is no rate
+    std::vector<Figure> figures = {};  // other than rates
     std::vector<Panel> panels = {};    // to be drawn
 
-    /// None of that name: null.
+    /// Null if there is none of that name.
     const Rate* find(const std::string& name) const;
 };
-/// `limits`: on how many threads those are measured; the machine's by default.
+/// `limits`: up to how many threads these are measured; by default, all of the machine's.
 Timings time(std::vector<Case> cases, int rounds, int limits = -1);
 
-/// The limits: springs that never leave the registers (for each a reciprocal root and 13 operations), and a
-/// copy that is too large for the caches.
+/// The limits: springs that stay in the registers (for each a reciprocal square root and 13 operations), and
+/// a copy that is too large for the caches.
 Work arithmetic(int threads);
 Work copying(int threads);
 
-/// Steps of a body, of 10 µs each, as many in a call as are said. In a context if it moves on the GPU, which
-/// is waited for.
+/// Steps of a body, of 10 µs each, `steps_a_call` in a call. A body on the GPU needs the context, whose
+/// commands are waited for.
 Case stepping(std::string name, const Body& body, const Simulation& how, const gl::Context* context = nullptr,
               int steps_a_call = 1 << 30);
 
-/// How often something of so many seconds has to be done for a twentieth of a second.
+/// How many repetitions of something of so many seconds take a twentieth of a second.
 int times_for(double seconds);
 
-/// Bullet's soft body of the same nodes and springs: a pass over its links, or a whole step. No case where
-/// Palpate was built without it.
+/// Bullet's soft body of the same nodes and springs: an iteration over its links, or a whole step. No cases
+/// if Palpate was built without it.
 std::vector<Case> bullet(const Body& body);
 
 /// A table, in Markdown.
@@ -84,10 +82,10 @@ std::string markdown(const Timings& timings, const std::string& unit);
 /// A benchmark, which `palpate bench` knows by its name.
 struct Benchmark {
     std::string name, about;
-    bool by_default;  // or only if it is asked for: it takes minutes
+    bool by_default;  // false: only by its name, since it takes minutes
     std::function<Timings(int rounds)> run;
     std::function<std::string(const Timings&)> text;                // Markdown
-    std::function<std::vector<Panel>(const Timings&)> curves = {};  // for a plot; or none
+    std::function<std::vector<Panel>(const Timings&)> curves = {};  // for a plot; may be empty
 };
 const std::vector<Benchmark>& benchmarks();
 

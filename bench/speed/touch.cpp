@@ -25,10 +25,10 @@ constexpr double tip = 0.003;          // m
 struct Surfaces {
     std::string name;
     std::vector<Mesh> meshes;
-    bool shared = true;  // whether triangles share vertices where they are drawn
+    bool shared = true;  // whether the drawn triangles share vertices
 };
 
-// As old graphics libraries want it: three vertices for each triangle.
+// Three vertices for each triangle, as old graphics libraries store them.
 Mesh unshared(const Mesh& mesh) {
     Mesh apart;
     for (uvec3 t : mesh.triangles) {
@@ -74,7 +74,7 @@ std::vector<Surfaces> subjects() {
             {"skin and brain, finer", fine}};
 }
 
-// Presses the last surface from in front, 8 mm deep, and strokes it, again and again.
+// Presses the surface from the front, 8 mm deep, and strokes it, again and again.
 Path strokes(const Mesh& surface) {
     const Bounds box = bounds(surface);
     vec3 front = surface.positions.front();
@@ -146,9 +146,9 @@ struct Line {
     std::size_t vertices = 0, faces = 0;
     double frames = 0;                               // a second
     double rate = 0;                                 // of the hand, Hz
-    double p50 = 0, p99 = 0, p999 = 0, longest = 0;  // s, from tick to tick
+    double p50 = 0, p99 = 0, p999 = 0, longest = 0;  // s, of the period
     double missed = 0, run = 0;                      // ticks
-    double work = 0, proxy = 0;                      // s of the processor's time, p99.9
+    double work = 0, proxy = 0;                      // s of CPU time, p99.9
     double contact = 0;                              // the share of frames in which it touched something
 };
 
@@ -163,7 +163,7 @@ Line measure(const Surfaces& subject, Renderer* renderer, double seconds, Grante
     std::optional<Scenery> scenery;
     if (renderer) scenery.emplace(*renderer, subject);
     line.vertices = scenery ? scenery->vertices() : 0;
-    if (scenery) scenery->draw({});  // a driver may compile meanwhile
+    if (scenery) scenery->draw({});  // warm-up: a driver may compile shaders
 
     TouchLoop loop({&hand});
     granted = loop.granted();
@@ -238,20 +238,20 @@ std::vector<Case> dent_cases(Renderer& renderer, const Surfaces& subject) {
 std::string figure(const std::string& line, const char* what) { return line + ": " + what; }
 
 Timings run(int rounds) {
-    const Machine machine;
+    const Hardware hardware;
     std::optional<Renderer> renderer;
-    if (machine.gl()) renderer.emplace(Offscreen(), machine.gl());
+    if (hardware.gl()) renderer.emplace(Offscreen(), hardware.gl());
     const std::vector<Surfaces> all = subjects();
     std::vector<Line> lines;
     Granted granted;
-    Panel periods{"ms from tick to tick", "part that is longer", {}, true};
+    Panel periods{"period (ms)", "fraction of longer periods", {}, true};
     for (const Surfaces& subject : all)
         lines.push_back(
             measure(subject, renderer ? &*renderer : nullptr, rounds * seconds_a_round, granted, periods));
     Timings timings;
     if (renderer) timings = time(dent_cases(*renderer, all[1]), rounds, 0);
     for (Case& of : timings.cases) of.run = {};
-    timings.driver = machine.driver();
+    timings.driver = hardware.driver();
     timings.driver +=
         fmt::format("{}The loop was granted: {}{}. {}.", timings.driver.empty() ? "" : " ", granted.schedule,
                     granted.memory_locked ? ", its memory locked" : ", its memory not locked", kernel());
@@ -302,8 +302,8 @@ std::string text(const Timings& timings) {
                                    "p99.9",
                                    "longest",
                                    "ticks missed",
-                                   "longest run of those",
-                                   "tick p99.9, µs of the processor",
+                                   "longest run of missed ticks",
+                                   "tick p99.9, µs of CPU time",
                                    "proxy p99.9, µs",
                                    "frames in contact"};
     text += head(columns);
@@ -330,7 +330,7 @@ std::string text(const Timings& timings) {
     }
     if (timings.cases.empty()) return text;
     text +=
-        "\nMilliseconds a frame of the skin, by how many dents it has and where they turn its normals:\n\n";
+        "\nMilliseconds a frame of the skin, by its number of dents and where they change its normals:\n\n";
     const std::string heads[] = {"dents", "in each fragment", "at each vertex"};
     text += head(heads);
     for (int count : dent_counts) {

@@ -1,5 +1,5 @@
-// What a person sees of the scene "brain" while they pull at it and feel it: pictures a second of 1280 × 720,
-// and what each of them takes.
+// The viewer with the scene "brain" while somebody pulls at it and feels it: pictures of 1280 × 720 a second,
+// and the time that each takes.
 #include "palpate/viewer/viewer.h"
 
 #include "bench/speed/drawing.h"
@@ -29,7 +29,7 @@ enum class Doing { watching, dragging, feeling };  // feeling: something is drag
 constexpr std::pair<Doing, const char*> all_doings[] = {
     {Doing::watching, "watching"}, {Doing::dragging, "dragging"}, {Doing::feeling, "dragging and feeling"}};
 
-// A window's framebuffer, where there is no window.
+// Stands in for a window's framebuffer.
 struct Screen {
     gl::Framebuffer framebuffer;
     GLuint pixels = 0;
@@ -41,12 +41,12 @@ struct Screen {
     ~Screen() { glDeleteRenderbuffers(1, &pixels); }
 };
 
-// What a picture takes, ms, in the mean.
+// The mean times of a picture, ms.
 struct Line {
     std::string name;
     double pictures = 0;  // a second
     double simulate = 0, map = 0, draw = 0, controls = 0;
-    double pace = 0;                  // s of the scene a second
+    double pace = 0;                  // s of the scene per second
     double haptics = 0, longest = 0;  // Hz; ms
 };
 
@@ -72,7 +72,7 @@ Line measure(Viewer& viewer, Gui& gui, const Screen& screen, Doing doing, double
     begin(viewer, doing, middle);
     Line line;
     double start = now(), last = start, due = 0, simulated = 0, mapped = 0, began = 0;
-    int pictures = -10;  // those first few do not count
+    int pictures = -10;  // warm-up: the first ten do not count
     while (now() - start < seconds || pictures < 5) {
         const double time = now();
         if (pictures == 0) {

@@ -13,7 +13,7 @@ namespace palpate {
 
 struct Outcome {
     int status;
-    std::string said;  // both streams
+    std::string output;  // of both streams
 };
 
 inline Outcome shell(const std::string& command) {
@@ -21,7 +21,7 @@ inline Outcome shell(const std::string& command) {
     Outcome outcome{-1, {}};
     std::array<char, 4096> block;
     while (const std::size_t n = std::fread(block.data(), 1, block.size(), pipe))
-        outcome.said.append(block.data(), n);
+        outcome.output.append(block.data(), n);
     const int ended = pclose(pipe);
     outcome.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
     return outcome;
@@ -31,13 +31,13 @@ inline Outcome palpate(const std::string& arguments) {
     return shell(std::string(PALPATE_COMMAND) + " " + arguments);
 }
 
-// Failed with exactly one line, which says these words.
+// Failed with exactly one line, which contains these words.
 inline void expect_one_line(const Outcome& outcome, std::initializer_list<std::string> words) {
-    EXPECT_EQ(outcome.status, 1) << outcome.said;
-    EXPECT_TRUE(outcome.said.starts_with("palpate: error: ")) << outcome.said;
-    EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1) << outcome.said;
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_TRUE(outcome.output.starts_with("palpate: error: ")) << outcome.output;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
     for (const std::string& word : words)
-        EXPECT_NE(outcome.said.find(word), std::string::npos) << outcome.said;
+        EXPECT_NE(outcome.output.find(word), std::string::npos) << outcome.output;
 }
 
 }  // namespace palpate

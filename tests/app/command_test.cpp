@@ -1,4 +1,4 @@
-// The palpate command as its users meet it: what it prints, how it ends, what it leaves behind.
+// The palpate command: its output, its exit status, and the files it leaves behind.
 #include "tests/app/command.h"
 
 #include "palpate/base/files.h"
@@ -55,30 +55,31 @@ TEST(Command, UsageErrorsEndWithTwo) {
                                   "bench embed --rounds 0",
                                   "doctor me"})
         EXPECT_EQ(palpate(arguments).status, 2) << arguments;
-    EXPECT_NE(palpate("run box --size 100000x100000").said.find("not from 1 to 16384 pixels"),
+    EXPECT_NE(palpate("run box --size 100000x100000").output.find("not from 1 to 16384 pixels"),
               std::string::npos);
-    EXPECT_NE(palpate("import x.ply -o y.ply --units metre").said.find("did you mean m?"), std::string::npos);
+    EXPECT_NE(palpate("import x.ply -o y.ply --units metre").output.find("did you mean m?"),
+              std::string::npos);
     EXPECT_EQ(palpate("--help").status, 0);
     const Outcome version = palpate("--version");
     EXPECT_EQ(version.status, 0);
-    EXPECT_TRUE(version.said.starts_with("palpate ")) << version.said;
-    EXPECT_NE(version.said.find_first_of("0123456789"), std::string::npos) << version.said;
+    EXPECT_TRUE(version.output.starts_with("palpate ")) << version.output;
+    EXPECT_NE(version.output.find_first_of("0123456789"), std::string::npos) << version.output;
     EXPECT_EQ(palpate("run --help").status, 0);
 }
 
 TEST(Command, ListsWhatThereIs) {
-    EXPECT_NE(palpate("list integrators").said.find("verlet"), std::string::npos);
-    EXPECT_NE(palpate("list backends").said.find("reference"), std::string::npos);
-    EXPECT_NE(palpate("list mappings").said.find("trilinear"), std::string::npos);
-    EXPECT_NE(palpate("list devices").said.find("script"), std::string::npos);
-    EXPECT_NE(palpate("list scenes").said.find("brain"), std::string::npos);
+    EXPECT_NE(palpate("list integrators").output.find("verlet"), std::string::npos);
+    EXPECT_NE(palpate("list backends").output.find("reference"), std::string::npos);
+    EXPECT_NE(palpate("list mappings").output.find("trilinear"), std::string::npos);
+    EXPECT_NE(palpate("list devices").output.find("script"), std::string::npos);
+    EXPECT_NE(palpate("list scenes").output.find("brain"), std::string::npos);
 }
 
 TEST(Command, RunsAndReports) {
     Scratch scratch;
     const Outcome outcome = palpate("run box --frames 30 --report " + (scratch / "r.json").string());
-    EXPECT_EQ(outcome.status, 0) << outcome.said;
-    EXPECT_NE(outcome.said.find("nodes, springs"), std::string::npos);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_NE(outcome.output.find("nodes, springs"), std::string::npos);
     EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": false"), std::string::npos);
 }
 
@@ -93,7 +94,7 @@ TEST(Command, RunsAMeshOrAVolume) {
         const Outcome outcome =
             palpate("run '" + (scratch / file).string() + "' --frames 2 --set body.it.nodes=300 --report " +
                     (scratch / "r.json").string());
-        EXPECT_EQ(outcome.status, 0) << outcome.said;
+        EXPECT_EQ(outcome.status, 0) << outcome.output;
         const auto report = nlohmann::json::parse(read_text(scratch / "r.json"));
         EXPECT_EQ(report["bodies"][0]["name"], "it");
         EXPECT_GT(report["bodies"][0]["nodes"], 200);
@@ -104,19 +105,19 @@ TEST(Command, RunsAMeshOrAVolume) {
     expect_one_line(palpate("run '" + (scratch / "ball.xyz").string() + "' --frames 2"),
                     {"ball.xyz", ".toml"});
     expect_one_line(palpate("run '" + (scratch / ".").string() + "' --frames 2"), {"no DICOM"});
-    // Where there is no display, it says what can be done.
+    // Without a display it names a remedy.
     for (const std::string& file : {std::string(), "'" + (scratch / "ball.nrrd").string() + "'"})
         expect_one_line(shell("env -u DISPLAY -u WAYLAND_DISPLAY " PALPATE_COMMAND " run " + file),
                         {"--headless"});
 }
 
-TEST(Command, InfoTellsPercentilesOfTheValues) {
+TEST(Command, InfoReportsPercentiles) {
     Scratch scratch;
     std::string voxels = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 10 10 10\nencoding: raw\n\n";
     for (int i = 0; i < 1000; ++i) voxels += char(i < 700 ? 0 : i % 250);
     write_text(scratch / "v.nrrd", voxels);
     const auto about =
-        nlohmann::json::parse(palpate("info --json " + (scratch / "v.nrrd").string()).said)["percentiles"];
+        nlohmann::json::parse(palpate("info --json " + (scratch / "v.nrrd").string()).output)["percentiles"];
     EXPECT_EQ(about["25"], 0);
     EXPECT_EQ(about["50"], 0);
     EXPECT_EQ(about["99"], 244);  // the 990th: 245 to 249 come twice each
@@ -133,22 +134,22 @@ TEST(Command, TheSameNodesOnAnyNumberOfThreads) {
     EXPECT_EQ(read_text(scratch / "1.csv"), read_text(scratch / "3.csv"));
 }
 
-TEST(Command, TimesItself) {
+TEST(Command, BenchRuns) {
     Scratch scratch;
     const Outcome outcome = palpate("bench lattice --rounds 1 --json " + (scratch / "b.json").string());
-    EXPECT_EQ(outcome.status, 0) << outcome.said;
-    EXPECT_NE(outcome.said.find("| 27³, springs in a table |"), std::string::npos) << outcome.said;
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_NE(outcome.output.find("| 27³, springs in a table |"), std::string::npos) << outcome.output;
     EXPECT_NE(read_text(scratch / "b.json").find("links_per_second"), std::string::npos);
 }
 
-// What the doctor says where these variables are set, and that it says it with status 0.
+// The doctor's report with these environment variables; it always exits with 0.
 nlohmann::json diagnosis(const std::string& variables) {
     const Outcome outcome = shell("{ " + variables + " " PALPATE_COMMAND " doctor --json; } 2>/dev/null");
-    EXPECT_EQ(outcome.status, 0) << outcome.said;
-    return nlohmann::json::parse(outcome.said, nullptr, false);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output, nullptr, false);
 }
 
-TEST(Command, TheDoctorLooksAtEveryPart) {
+TEST(Command, TheDoctorChecksEveryPart) {
     const nlohmann::json found = diagnosis("PALPATE_DATA=/");
     for (const char* part :
          {"opengl", "reference", "cpu", "feedback", "fragment", "compute", "mapping", "films", "data"}) {
@@ -159,17 +160,17 @@ TEST(Command, TheDoctorLooksAtEveryPart) {
     EXPECT_FALSE(diagnosis("PALPATE_DATA=/no-such-folder")["data"]["ok"]);
     const Outcome text = palpate("doctor");
     EXPECT_EQ(text.status, 0);
-    EXPECT_NE(text.said.find("reference"), std::string::npos) << text.said;
+    EXPECT_NE(text.output.find("reference"), std::string::npos) << text.output;
     if (!found["opengl"]["ok"]) GTEST_SKIP() << "OpenGL is not available";
     const std::string renderer = found["driver"]["renderer"];
-    EXPECT_NE(text.said.find(renderer), std::string::npos) << text.said;
+    EXPECT_NE(text.output.find(renderer), std::string::npos) << text.output;
     EXPECT_TRUE(found["driver"]["software"].is_boolean());
     for (const char* part : {"feedback", "fragment", "compute", "mapping"})
         EXPECT_FALSE(found[part]["needs"].empty()) << part;
     EXPECT_TRUE(found["mapping"]["ok"]) << found["mapping"];
 }
 
-TEST(Command, TheDoctorSaysWhatIsMissing) {
+TEST(Command, TheDoctorReportsWhatIsMissing) {
     for (const char* variables :
          {"__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json", "LIBGL_DRIVERS_PATH=/nowhere"}) {
         const nlohmann::json found = diagnosis(variables);
@@ -189,14 +190,14 @@ TEST(Command, TheDoctorSaysWhatIsMissing) {
 TEST(Command, RunsUntilRest) {
     for (const char* arguments : {"run box --until-rest", "run box --until-rest speed"}) {
         const Outcome outcome = palpate(std::string(arguments) + " --set body.beam.damping=20");
-        EXPECT_EQ(outcome.status, 0) << outcome.said;
-        EXPECT_NE(outcome.said.find(", then at rest"), std::string::npos) << outcome.said;
+        EXPECT_EQ(outcome.status, 0) << outcome.output;
+        EXPECT_NE(outcome.output.find(", then at rest"), std::string::npos) << outcome.output;
     }
     const Outcome one = palpate("run box --until-rest move");
-    EXPECT_NE(one.said.find("in 1 frames, then at rest"), std::string::npos) << one.said;
+    EXPECT_NE(one.output.find("in 1 frames, then at rest"), std::string::npos) << one.output;
 }
 
-TEST(Command, ScenesThatDoNotFit) {
+TEST(Command, BadScenes) {
     Scratch scratch;
     expect_one_line(palpate("run no-such-scene"), {"no-such-scene", "brain"});
     expect_one_line(palpate("run box --integrator rk9"), {"rk9", "verlet"});
@@ -218,7 +219,7 @@ TEST(Command, DivergenceIsReported) {
     const Outcome outcome =
         palpate("run box --set simulation.step=0.0165 --force --report " + (scratch / "r.json").string());
     EXPECT_EQ(outcome.status, 1);
-    EXPECT_NE(outcome.said.find("blew up"), std::string::npos) << outcome.said;
+    EXPECT_NE(outcome.output.find("blew up"), std::string::npos) << outcome.output;
     EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": true"), std::string::npos);
 }
 
@@ -263,11 +264,11 @@ TEST(Command, ImportsABrain) {
     const std::string out = (scratch / "brain.ply").string();
     const Outcome made =
         palpate("import " + brain + " -o " + out + " --iso 60.5 --largest --faces 140000 --rotate -90 0 0");
-    EXPECT_EQ(made.status, 0) << made.said;
+    EXPECT_EQ(made.status, 0) << made.output;
     const Outcome info = palpate("info --json " + out);
-    EXPECT_EQ(info.status, 0) << info.said;
+    EXPECT_EQ(info.status, 0) << info.output;
     for (const char* fact : {"\"parts\": 1,", "\"open_edges\": 0,", "\"bad_edges\": 0,"})
-        EXPECT_NE(info.said.find(fact), std::string::npos) << info.said;
+        EXPECT_NE(info.output.find(fact), std::string::npos) << info.output;
 }
 
 TEST(Command, AFullDiskLeavesNothing) {
@@ -291,10 +292,10 @@ TEST(Command, AFilmThatFailsLeavesNothing) {
     Scratch scratch;
     const Outcome outcome = shell("trap '' XFSZ; ulimit -f 8; " + std::string(PALPATE_COMMAND) +
                                   " run box --frames 30 --video " + (scratch / "film.mp4").string());
-    if (outcome.said.find("OpenGL") != std::string::npos) GTEST_SKIP() << "OpenGL is not available";
+    if (outcome.output.find("OpenGL") != std::string::npos) GTEST_SKIP() << "OpenGL is not available";
     expect_one_line(outcome, {"ffmpeg"});
     EXPECT_EQ(scratch.entries(), 0u);
-    // Names that look like something else to ffmpeg, and a failure of ours beside a film.
+    // A name that ffmpeg would take for a protocol, and a failure of another output beside a film.
     EXPECT_EQ(shell("cd " + (scratch / ".").string() + "; " + PALPATE_COMMAND +
                     " run box --frames 2 --video 12:30.mp4 >o")
                   .status,
@@ -306,7 +307,7 @@ TEST(Command, AFilmThatFailsLeavesNothing) {
     EXPECT_EQ(scratch.entries(), 3u);
 }
 
-TEST(Command, TroubleWithOutputsIsSaid) {
+TEST(Command, BadOutputsAreReported) {
     Scratch scratch;
     EXPECT_EQ(shell(std::string(PALPATE_COMMAND) + " list scenes 2>/dev/null >/dev/full").status, 1);
     expect_one_line(palpate("run box --surface " + (scratch / "out.xyz").string()), {"out.xyz", ".ply"});
@@ -318,8 +319,8 @@ TEST(Command, TroubleWithOutputsIsSaid) {
     EXPECT_TRUE(std::filesystem::is_symlink(scratch / "null"));
 }
 
-// What a file will hold is what its name says, and no folder is made for it.
-TEST(Command, OutputsAreWhatTheirNamesSay) {
+// An output's name must have the extension of its format, and no folder is made for it.
+TEST(Command, OutputsNeedTheirExtension) {
     Scratch scratch;
     auto in = [&](const std::string& name) { return (scratch / name).string(); };
     expect_one_line(palpate("run nodule --plot " + in("x.png")), {"x.png", "x.svg"});
@@ -371,7 +372,7 @@ TEST(Command, NoOutputReplacesAnInput) {
         expect_one_line(palpate(arguments), {"an input of the run would be replaced", "name another file"});
     EXPECT_EQ(read_text(scratch / "k.ply"), before);
     EXPECT_EQ(scratch.entries(), 7u);
-    // What only looks alike is written, and what is no input is replaced.
+    // A name that only resembles an input's is written, and files that are not inputs are replaced.
     for (int i = 0; i < 2; ++i)
         EXPECT_EQ(palpate("run " + in("s.toml") + " --frames 1 --sequence " + in("k.ply")).status, 0);
     EXPECT_EQ(read_text(scratch / "k.ply"), before);
@@ -382,21 +383,22 @@ TEST(Command, AnEmptyValueIsRefused) {
                                   "run box --frames 1 --backend ''", "run ''", "import x.ply -o ''",
                                   "import x.ply -o y.ply --units ''", "bench cloth --json ''"}) {
         const Outcome outcome = palpate(arguments);
-        EXPECT_EQ(outcome.status, 2) << arguments << outcome.said;
-        EXPECT_NE(outcome.said.find("the value is empty"), std::string::npos) << arguments << outcome.said;
+        EXPECT_EQ(outcome.status, 2) << arguments << outcome.output;
+        EXPECT_NE(outcome.output.find("the value is empty"), std::string::npos)
+            << arguments << outcome.output;
     }
 }
 
-TEST(Command, SaysWhatWasPerhapsMeant) {
+TEST(Command, SuggestsTheNearestName) {
     expect_one_line(palpate("run brian --frames 1"), {"did you mean brain?"});
-    EXPECT_NE(palpate("run box --fames 5").said.find("did you mean --frames?"), std::string::npos);
-    EXPECT_NE(palpate("run box --fames=5").said.find("did you mean --frames?"), std::string::npos);
-    EXPECT_NE(palpate("lst").said.find("did you mean list?"), std::string::npos);
-    EXPECT_NE(palpate("list scene").said.find("did you mean scenes?"), std::string::npos);
-    EXPECT_NE(palpate("foo").said.find("foo is not one of run, import, info, list"), std::string::npos);
+    EXPECT_NE(palpate("run box --fames 5").output.find("did you mean --frames?"), std::string::npos);
+    EXPECT_NE(palpate("run box --fames=5").output.find("did you mean --frames?"), std::string::npos);
+    EXPECT_NE(palpate("lst").output.find("did you mean list?"), std::string::npos);
+    EXPECT_NE(palpate("list scene").output.find("did you mean scenes?"), std::string::npos);
+    EXPECT_NE(palpate("foo").output.find("foo is not one of run, import, info, list"), std::string::npos);
 }
 
-TEST(Command, AFilmIsNotTooSmall) {
+TEST(Command, AFilmThatIsTooSmallIsRefused) {
     Scratch scratch;
     const std::string film = (scratch / "one.mp4").string();
     for (const char* size : {"1x1", "15x40", "40x15"})
@@ -405,28 +407,28 @@ TEST(Command, AFilmIsNotTooSmall) {
     EXPECT_EQ(scratch.entries(), 0u);
 }
 
-TEST(Command, OptionsThatChangeNothingAreSaid) {
-    EXPECT_NE(palpate("run box --frames 1 --lattice").said.find("note: --lattice changes nothing"),
+TEST(Command, OptionsWithoutEffectAreReported) {
+    EXPECT_NE(palpate("run box --frames 1 --lattice").output.find("note: --lattice changes nothing"),
               std::string::npos);
-    EXPECT_NE(palpate("run box --frames 1 --size 99x99").said.find("note: --size changes nothing"),
+    EXPECT_NE(palpate("run box --frames 1 --size 99x99").output.find("note: --size changes nothing"),
               std::string::npos);
-    EXPECT_NE(palpate("run box --frames 1 --force").said.find("note: --force changes nothing"),
+    EXPECT_NE(palpate("run box --frames 1 --force").output.find("note: --force changes nothing"),
               std::string::npos);
-    EXPECT_EQ(palpate("run box --frames 1").said.find("note:"), std::string::npos);
+    EXPECT_EQ(palpate("run box --frames 1").output.find("note:"), std::string::npos);
 }
 
 TEST(Command, InfoNamesSizesInMetres) {
     Scratch scratch;
     write_mesh(block(vec3(0), vec3(50, 100, 200)), scratch / "block.ply");
     const Outcome metres = palpate("info " + (scratch / "block.ply").string());
-    EXPECT_NE(metres.said.find("unit right"), std::string::npos) << metres.said;
+    EXPECT_NE(metres.output.find("unit right"), std::string::npos) << metres.output;
     const Outcome millimetres = palpate("info --units mm " + (scratch / "block.ply").string());
-    EXPECT_NE(millimetres.said.find("0.05 x 0.1 x 0.2"), std::string::npos) << millimetres.said;
-    EXPECT_EQ(millimetres.said.find("unit right"), std::string::npos) << millimetres.said;
+    EXPECT_NE(millimetres.output.find("0.05 x 0.1 x 0.2"), std::string::npos) << millimetres.output;
+    EXPECT_EQ(millimetres.output.find("unit right"), std::string::npos) << millimetres.output;
     EXPECT_EQ(palpate("info --units miles " + (scratch / "block.ply").string()).status, 2);
 }
 
-TEST(Command, InterruptedItLeavesNothingHalfWritten) {
+TEST(Command, AnInterruptLeavesNothingHalfWritten) {
     if (!has_program("ffmpeg")) GTEST_SKIP() << "ffmpeg is not available";
     Scratch scratch;
     const std::string film = (scratch / "film.mp4").string();
@@ -436,7 +438,7 @@ TEST(Command, InterruptedItLeavesNothingHalfWritten) {
             shell(fmt::format("{} run box --video {} & while kill -0 $! && [ ! -s {}.part$! ]; do sleep "
                               "0.05; done; kill -{} $!; wait $!",
                               PALPATE_COMMAND, film, film, signal));
-        EXPECT_GT(outcome.status, 128) << outcome.said;
+        EXPECT_GT(outcome.status, 128) << outcome.output;
         EXPECT_EQ(scratch.entries(), 0u) << signal;
     }
 }

@@ -1,6 +1,6 @@
-// Files as they should not be, given to `palpate import`: each ends in one clear line, or in a sound solid.
-// What hangs is ended after a minute of the processor's time, a hundred times as long as any of them takes.
-// Formats have tests of their own; here the whole way from file to solid is walked.
+// Bad files given to `palpate import`: each ends in one clear line, or in a sound solid. An import that hangs
+// is ended after a minute of CPU time, a hundred times what any of them takes. Formats have tests of their
+// own; these cover the whole way from file to solid.
 #include "palpate/base/files.h"
 #include "palpate/files/read.h"
 #include "palpate/files/write.h"
@@ -60,7 +60,7 @@ std::string threemf(const Mesh& mesh) {
     return zipped({{"3D/3dmodel.model", model(object, "<item objectid='1'/>", "unit='meter'")}});
 }
 
-const char* const endings[] = {".ply", ".obj", ".stl", ".off", ".wrl", ".glb", ".gltf", ".x3d", ".3mf"};
+const char* const extensions[] = {".ply", ".obj", ".stl", ".off", ".wrl", ".glb", ".gltf", ".x3d", ".3mf"};
 
 enum class End { solid, error };
 
@@ -69,25 +69,25 @@ class Hostile : public ::testing::Test {
     Scratch scratch;
 
     // The bytes of a file of this format.
-    std::string file_of(const Mesh& mesh, const std::string& ending) const {
-        if (ending == ".off") return off(mesh);
-        if (ending == ".wrl") return wrl(mesh);
-        if (ending == ".x3d") return x3d(mesh);
-        if (ending == ".3mf") return threemf(mesh);
-        const auto path = scratch / ("good" + ending);
+    std::string file_of(const Mesh& mesh, const std::string& extension) const {
+        if (extension == ".off") return off(mesh);
+        if (extension == ".wrl") return wrl(mesh);
+        if (extension == ".x3d") return x3d(mesh);
+        if (extension == ".3mf") return threemf(mesh);
+        const auto path = scratch / ("good" + extension);
         write_mesh(mesh, path);
         const std::string bytes = read_text(path);
         std::filesystem::remove(path);
         return bytes;
     }
 
-    // How the import of these bytes ended; all that is always true is checked here.
+    // Imports these bytes, and checks all that holds for every file.
     End import(const std::string& name, const std::string& bytes, const std::string& more = "") {
         const auto in = scratch / name, out = scratch / "out.ply";
         std::ofstream(in, std::ios::binary) << bytes;
         const Outcome outcome = shell(fmt::format("ulimit -t 60; {} import {} -o {} {}", PALPATE_COMMAND,
                                                   in.string(), out.string(), more));
-        said = outcome.said;
+        output = outcome.output;
         SCOPED_TRACE(name);
         if (outcome.status != 0) {
             expect_one_line(outcome, {name, "; "});
@@ -102,14 +102,14 @@ class Hostile : public ::testing::Test {
     }
 
     void expect_error(const std::string& name, const std::string& bytes, const std::string& word = "") {
-        EXPECT_EQ(import(name, bytes), End::error) << name << ": " << said;
-        EXPECT_NE(said.find(word), std::string::npos) << name << ": " << said;
+        EXPECT_EQ(import(name, bytes), End::error) << name << ": " << output;
+        EXPECT_NE(output.find(word), std::string::npos) << name << ": " << output;
     }
     void expect_solid(const std::string& name, const std::string& bytes, const std::string& more = "") {
-        EXPECT_EQ(import(name, bytes, more), End::solid) << name << ": " << said;
+        EXPECT_EQ(import(name, bytes, more), End::solid) << name << ": " << output;
     }
 
-    std::string said;
+    std::string output;  // of the last import
 
  private:
     static void expect_solid(const Mesh& mesh) {
@@ -125,43 +125,43 @@ class Hostile : public ::testing::Test {
 const Mesh ball = ellipsoid({0.03f, 0.04f, 0.05f}, 12);
 
 TEST_F(Hostile, GoodFilesOfAllFormatsAreSolids) {
-    for (const std::string ending : endings) expect_solid("good" + ending, file_of(ball, ending));
+    for (const std::string extension : extensions) expect_solid("good" + extension, file_of(ball, extension));
 }
 
-TEST_F(Hostile, WhatIsNoFileOfItsFormat) {
+TEST_F(Hostile, FilesOfNoFormat) {
     std::mt19937 random(4);
     std::string noise(10'000, ' ');
     for (char& c : noise) c = char(random());
-    for (const std::string ending : endings) {
-        expect_error("empty" + ending, "");
-        expect_error("noise" + ending, noise);
-        expect_error("nul" + ending, std::string(10'000, '\0'));
-        expect_error("words" + ending, "these are words, and no mesh\n");
-        expect_error("newlines" + ending, std::string(10'000, '\n'));
+    for (const std::string extension : extensions) {
+        expect_error("empty" + extension, "");
+        expect_error("noise" + extension, noise);
+        expect_error("nul" + extension, std::string(10'000, '\0'));
+        expect_error("words" + extension, "these are words, and no mesh\n");
+        expect_error("newlines" + extension, std::string(10'000, '\n'));
     }
 }
 
-TEST_F(Hostile, WhatIsCutShort) {
-    for (const std::string ending : endings) {
-        const std::string good = file_of(ball, ending);
+TEST_F(Hostile, TruncatedFiles) {
+    for (const std::string extension : extensions) {
+        const std::string good = file_of(ball, extension);
         for (const double part : {0.1, 0.5, 0.93}) {
-            // Of an OBJ or a text that ends after a row, what is left may be whole in itself.
+            // The beginning of an OBJ may be a complete file itself.
             const std::string bytes = good.substr(0, std::size_t(double(good.size()) * part));
-            if (import("cut" + ending, bytes) == End::solid)
-                EXPECT_TRUE(ending == ".obj") << ending << " " << part;
+            if (import("cut" + extension, bytes) == End::solid)
+                EXPECT_TRUE(extension == ".obj") << extension << " " << part;
         }
     }
 }
 
-TEST_F(Hostile, ABitTurnedHereAndThere) {
+TEST_F(Hostile, FlippedBits) {
     std::mt19937 random(5);
-    for (const std::string ending : endings) {
-        const std::string good = file_of(ball, ending);
+    for (const std::string extension : extensions) {
+        const std::string good = file_of(ball, extension);
         for (int i = 0; i < 6; ++i) {
             std::string bytes = good;
             for (int flips = 1 + i; flips > 0; --flips)
                 bytes[random() % bytes.size()] ^= char(1 << random() % 8);
-            import("bits" + ending, bytes);
+            import("bits" + extension, bytes);
         }
     }
 }
@@ -172,7 +172,7 @@ std::string ply(const std::string& vertices, const std::string& faces, const std
            "\nproperty list uchar int vertex_indices\nend_header\n" + rows;
 }
 
-TEST_F(Hostile, CountsThatLie) {
+TEST_F(Hostile, WrongCounts) {
     expect_error("faces.ply", ply("3", "4294967296", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
     expect_error("vertices.ply", ply("4294967295", "1", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
     expect_error("corners.ply", ply("3", "1", "0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n"));
@@ -191,7 +191,7 @@ TEST_F(Hostile, CountsThatLie) {
     expect_error("count.gltf", gltf);
 }
 
-TEST_F(Hostile, NumbersThatAreNone) {
+TEST_F(Hostile, InvalidNumbers) {
     const std::string face = "f 1 2 3\n";
     for (const std::string bad : {"nan", "inf", "-Infinity", "1e39", "1,5", "0x1p3", "one", "1.2.3"}) {
         expect_error("number.obj", "v 0 0 0\nv 1 0 0\nv 0 " + bad + " 0\n" + face);
@@ -208,7 +208,7 @@ TEST_F(Hostile, NumbersThatAreNone) {
     expect_error("comma.obj", "v 0,0 0,0 0,0\nv 1,5 0,0 0,0\nv 0,0 1,5 0,0\n" + face, "decimal comma");
 }
 
-TEST_F(Hostile, FacesOfNoVertex) {
+TEST_F(Hostile, FacesWithInvalidIndices) {
     for (const char* corner : {"0", "4", "-4", "99999999999", "1.5", "x"})
         expect_error("corner.obj", fmt::format("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {}\n", corner));
     for (const char* corner : {"-1", "3", "4294967295", "1.5", "x"}) {
@@ -221,7 +221,7 @@ TEST_F(Hostile, FacesOfNoVertex) {
     }
 }
 
-// ---- shapes that are no solid ----
+// ---- shapes that are not solids ----
 
 std::string obj(const std::vector<dvec3>& positions, const std::vector<std::vector<int>>& faces) {
     std::string text;
@@ -242,7 +242,7 @@ std::string obj(const Mesh& mesh, double size = 1, dvec3 move = dvec3(0)) {
     return obj(positions, faces);
 }
 
-TEST_F(Hostile, WhatHasNoInside) {
+TEST_F(Hostile, ShapesWithoutAnInside) {
     const std::vector<std::vector<int>> three{{0, 1, 2}}, four{{0, 1, 2}, {1, 3, 2}};
     expect_error("triangle.obj", obj({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, three));
     expect_error("line.obj", obj({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, four));
@@ -259,10 +259,10 @@ TEST_F(Hostile, WhatHasNoInside) {
     std::vector<dvec3> band;
     quads.clear();
     for (int i = 0; i < 60; ++i) {
-        const double turn = 2 * M_PI * i / 60;
+        const double angle = 2 * M_PI * i / 60;
         for (const double side : {-0.02, 0.02}) {
-            const double way = 0.1 + side * std::cos(turn / 2);
-            band.push_back({way * std::cos(turn), way * std::sin(turn), side * std::sin(turn / 2)});
+            const double radius = 0.1 + side * std::cos(angle / 2);
+            band.push_back({radius * std::cos(angle), radius * std::sin(angle), side * std::sin(angle / 2)});
         }
         const int a = 2 * i, c = (a + 2) % 120;
         quads.push_back(i < 59 ? std::vector{a, a + 1, c + 1, c} : std::vector{a, a + 1, 0, 1});
@@ -270,11 +270,11 @@ TEST_F(Hostile, WhatHasNoInside) {
     expect_error("moebius.obj", obj(band, quads));
 }
 
-TEST_F(Hostile, SizesAndPlacesFarFromAnyBody) {
+TEST_F(Hostile, ExtremeSizesAndPlaces) {
     for (const double size : {1e-20, 1e-6, 1e6, 1e30}) expect_solid("size.obj", obj(ball, size));
     const double millimetre = 0.01;  // of a ball 100 mm long
     expect_solid("far.obj", obj(ball, millimetre, {1e6, -1e6, 1e6}));
-    EXPECT_NE(said.find("note: "), std::string::npos) << said;
+    EXPECT_NE(output.find("note: "), std::string::npos) << output;
 }
 
 TEST_F(Hostile, AFanOfFiveThousandFacesAndAPolygonOfTwentyThousandCorners) {
@@ -333,10 +333,10 @@ TEST_F(Hostile, Volumes) {
     expect_solid("good.mha", mha("16 16 16", good));
     expect_error("terabyte.nrrd", nrrd("10000 10000 10000", "uint8", good));
     expect_error("terabyte.mha", mha("10000 10000 10000", good));
-    for (const std::string ending : {".nrrd", ".mha", ".nii", ".nii.gz", ".dcm"}) {
-        expect_error("empty" + ending, "");
-        expect_error("noise" + ending, good);
-        expect_error("nul" + ending, std::string(10'000, '\0'));
+    for (const std::string extension : {".nrrd", ".mha", ".nii", ".nii.gz", ".dcm"}) {
+        expect_error("empty" + extension, "");
+        expect_error("noise" + extension, good);
+        expect_error("nul" + extension, std::string(10'000, '\0'));
     }
     expect_error("cut.nrrd", nrrd("16 16 16", "uint8", good.substr(0, 3000)));
     expect_error("cut.mha", mha("16 16 16", good.substr(0, 3000)));
@@ -347,30 +347,30 @@ TEST_F(Hostile, Volumes) {
     expect_error("flat.nrrd", nrrd("16 16 16", "uint8", std::string(4096, 'x')));
 }
 
-// What a file leaves out is filled in, and said wherever it is read.
-TEST_F(Hostile, WhatAVolumeLeavesOutIsSaid) {
+// What a file leaves out is assumed, and reported wherever it is read.
+TEST_F(Hostile, AssumptionsAboutAVolumeAreReported) {
     const std::string name = (scratch / "bare.nrrd").string(), note = "it states no spacing: 1 mm is assumed";
     write_text(name, nrrd("16 16 16", "uint8", voxels()));
     for (const std::string& arguments : {"info " + name, "info --json " + name,
                                          "import " + name + " -o " + (scratch / "out.ply").string()}) {
         const Outcome outcome = palpate(arguments);
-        EXPECT_EQ(outcome.status, 0) << outcome.said;
-        EXPECT_NE(outcome.said.find(note), std::string::npos) << outcome.said;
+        EXPECT_EQ(outcome.status, 0) << outcome.output;
+        EXPECT_NE(outcome.output.find(note), std::string::npos) << outcome.output;
     }
     write_text(scratch / "scene.toml",
                "[[body]]\nname = \"ball\"\nvolume = \"bare.nrrd\"\nyoungs_modulus = 5000\ndensity = 1000\n"
                "nodes = 100\n");
     const Outcome run = palpate("run " + (scratch / "scene.toml").string() + " --steps 1 --report " +
                                 (scratch / "report.json").string());
-    EXPECT_EQ(run.status, 0) << run.said;
-    EXPECT_NE(run.said.find("note: body ball: " + note), std::string::npos) << run.said;
+    EXPECT_EQ(run.status, 0) << run.output;
+    EXPECT_NE(run.output.find("note: body ball: " + note), std::string::npos) << run.output;
     EXPECT_NE(read_text(scratch / "report.json").find("body ball: " + note), std::string::npos);
 }
 
-TEST_F(Hostile, NothingOfThisTookMuchMemory) {
-    for (const std::string ending : endings) import("good" + ending, file_of(ball, ending));
+TEST_F(Hostile, MemoryIsBounded) {
+    for (const std::string extension : extensions) import("good" + extension, file_of(ball, extension));
     rusage used{};
-    getrusage(RUSAGE_CHILDREN, &used);  // of the greediest of all the commands so far
+    getrusage(RUSAGE_CHILDREN, &used);  // the largest of all commands so far
     EXPECT_LT(used.ru_maxrss / 1024, 600) << "MB";
 }
 

@@ -1,5 +1,5 @@
-// With the core alone: a mesh becomes a lattice, a surface hangs on it, it falls onto a table, and the
-// surface follows. What is left out is an Error that names the part.
+// With the core alone: a mesh becomes a lattice with an embedded surface, which falls onto a table. Using a
+// part that was left out throws an Error that names it.
 #include "palpate/base/error.h"
 #include "palpate/body/collider.h"
 #include "palpate/body/embedding.h"
@@ -16,15 +16,15 @@ using namespace palpate;
 
 namespace {
 
-int wrong = 0;
+int failures = 0;
 
 void expect(bool right, const char* what) {
     if (right) return;
-    std::fprintf(stderr, "not so: %s\n", what);
-    ++wrong;
+    std::fprintf(stderr, "failed: %s\n", what);
+    ++failures;
 }
 
-// A cube whose faces are cut into squares, as one that reads no file makes it.
+// A cube whose faces are divided into squares.
 Mesh block(float size, int squares) {
     Mesh mesh;
     for (int side = 0; side < 6; ++side) {
@@ -90,7 +90,7 @@ int main() try {
     const std::string voxels = refusal([&] { repair(mesh, {.solid = SolidBy::voxels}); });
     expect(has(voxels, "without its part voxels") && has(voxels, "PALPATE_PARTS"),
            "the voxels' part is named");
-    return wrong;
+    return failures;
 } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

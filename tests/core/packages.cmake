@@ -1,11 +1,11 @@
-# The core as it was built read no header, and as it was linked needs no library, of packages other than its own; and
-# installed it is found where those cannot be.
+# The core reads no headers and links no libraries of packages other than its own, and once installed it is found where
+# other packages are missing.
 #     cmake -D BUILD=the tree built -D PROGRAM=core_alone -D SOURCE=this folder -D FLAGS=its flags -D WORK=a folder -P ...
 function(run)
     execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${WORK} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-# Refuses whatever line has a folder or a file of another package.
+# Fails if a line names a folder or a file of another package.
 function(refuse_others what text)
     string(REGEX MATCHALL "[^\n]*(openvdb|tbb|assimp|gdcm|draco|expat|zip|zlib|libz\\.|boost|meshopt|stb_|nlohmann|toml|epoxy|libGL|EGL/|GL/)[^\n]*"
            others "${text}")

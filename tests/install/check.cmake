@@ -1,5 +1,5 @@
-# Palpate as a guest of other projects: installed, it is found by the programs of examples/, and as a folder of another
-# project it builds there.  cmake -D BUILD=a built tree -D SOURCE=its sources -D FLAGS=its flags -D WORK=a folder -P ...
+# Palpate in other projects: once installed, it is found by the programs of examples/, and as a folder of another project
+# it builds there.  cmake -D BUILD=a built tree -D SOURCE=its sources -D FLAGS=its flags -D WORK=a folder -P ...
 function(run)
     execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${WORK} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -18,7 +18,7 @@ if(NOT EXISTS ${WORK}/pressed.ply)
     message(FATAL_ERROR "first_touch wrote nothing")
 endif()
 
-# All of it in one shared object, as plug-ins and Python modules are: so all of it is position-independent.
+# All of it in one shared object, like a plug-in or a Python module: all of it must be position-independent.
 file(WRITE ${WORK}/plugin/plugin.cpp "#include <palpate/palpate.h>
 bool works() { return palpate::names(palpate::Backend{}).size() > 1; }
 ")
@@ -38,7 +38,7 @@ run(${CMAKE_COMMAND} -G Ninja -S plugin -B shared -D CMAKE_PREFIX_PATH=${WORK}/p
 run(${CMAKE_COMMAND} --build shared)
 run(shared/host)
 
-# That the rest compiles the build itself shows: here it counts that all targets are found from outside.
+# The build itself shows that the rest compiles; this checks that all targets are found from outside.
 file(WRITE ${WORK}/host/main.cpp "#include <palpate/base/files.h>
 int main() { palpate::write_text(\"said\", \"hello\"); }
 ")

@@ -1,4 +1,4 @@
-// Draws the viewer's window as docs/viewer.md and the README show it, on a display that nobody sees.
+// Draws the viewer's window as docs/viewer.md and the README show it, on a virtual display.
 //   viewer_pictures FOLDER
 #include "palpate/base/files.h"
 #include "palpate/files/image_file.h"
@@ -20,7 +20,7 @@ class Photographer {
         viewer().open(find_scene(scene));
         while (viewer().importing()) window_.round();
     }
-    // So much of the scene's own time.
+    // In the scene's time.
     void wait(double seconds) {
         const double until = viewer().experiment()->time() + seconds;
         while (viewer().experiment()->time() < until) window_.round();

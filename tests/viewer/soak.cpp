@@ -1,5 +1,4 @@
-// Minutes of random input into the viewer's window on a display that nobody sees; ends with 1 if memory
-// grows.
+// Minutes of random input into the viewer's window on a virtual display; ends with 1 if memory grows.
 //   viewer_soak [MINUTES] [SEED]
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
@@ -22,7 +21,7 @@
 namespace palpate {
 namespace {
 
-// Of the process, in memory, MB.
+// The process's resident set, MB.
 double resident() {
     malloc_trim(0);
     std::ifstream file("/proc/self/statm");
@@ -31,7 +30,7 @@ double resident() {
     return pages * double(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-// Keys that are bound, but for those that write files; F to look, R to begin anew.
+// All keys that are bound, except those that write files.
 constexpr KeySym keys[] = {XK_1,    XK_2, XK_3, XK_4, XK_k, XK_space, XK_period,   XK_r,      XK_f,
                            XK_Home, XK_b, XK_w, XK_l, XK_n, XK_Tab,   XK_question, XK_Escape, XK_space};
 constexpr const char* scenes[] = {"box", "drape", "nodule", "flag", "catheter"};
@@ -103,7 +102,7 @@ class Soak {
 
     void button(unsigned number, bool down) { person_.button(number, down); }
 
-    // As the controls do, and sometimes what cannot be.
+    // As the controls do, and some changes that are invalid.
     void change() {
         const char* const changes[] = {"simulation.integrator=\"rk4\"",
                                        "simulation.integrator=\"verlet\"",
@@ -170,7 +169,7 @@ int run(double minutes, unsigned seed) {
     Soak soak(window, person, seed, folder);
     window.viewer().open(find_scene("box"));
     const double start = now(), length = 60 * minutes;
-    double warm = 0, most = 0, told = 0;
+    double warm = 0, most = 0, reported = 0;
     long acts = 0;
     while (now() - start < length) {
         if (!soak.act()) {
@@ -179,8 +178,8 @@ int run(double minutes, unsigned seed) {
         }
         ++acts;
         const double time = now() - start;
-        if (time < 0.3 * length || time - told < length / 20) continue;
-        told = time;
+        if (time < 0.3 * length || time - reported < length / 20) continue;
+        reported = time;
         const double here = resident();
         if (time < 0.5 * length) warm = std::max(warm, here);
         most = std::max(most, here);
@@ -190,7 +189,7 @@ int run(double minutes, unsigned seed) {
     }
     std::filesystem::remove_all(folder);
 #ifdef __SANITIZE_ADDRESS__
-    __lsan_do_leak_check();  // here, while the driver is loaded, so that what it keeps bears its name
+    __lsan_do_leak_check();  // here, while the driver is loaded, so that its leaks bear its name
 #endif
     fmt::print("{} inputs in {:.1f} minutes; memory: {:.0f} MB at most until the middle, {:.0f} MB after\n",
                acts, minutes, warm, most);
