@@ -124,12 +124,12 @@ void replay(const std::string& file) {
     Experiment experiment(prepare(recording.scene, recording.changes, terminal_progress()));
     end_progress();
     while (experiment.replay(recording)) {}
-    const std::string print = experiment.fingerprint();
+    const bool same = experiment.fingerprint() == recording.fingerprint;
     fmt::print("{}\n", recording.scene.name);
     print_table({{"frames", grouped(recording.frames)},
                  {"inputs", grouped((long long)recording.inputs.size())},
-                 {"state at the end", print == recording.fingerprint ? "the same to the bit" : "different"}});
-    if (print != recording.fingerprint)
+                 {"state at the end", same ? "the same to the bit" : "different"}});
+    if (!same)
         throw Error("the state after the last frame differs from the recorded one", file,
                     "replay it on the same backend, with the same files and the same version");
 }

@@ -95,7 +95,7 @@ inline Deformation of_a_sheet(const Deformation& d) {
     return {d.name, point, gradient};
 }
 
-/// A surface as it lies at the moment.
+/// A deformed surface.
 struct Moved {
     std::vector<vec3> positions, normals;
     std::vector<vec4> tangents;

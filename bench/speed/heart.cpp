@@ -29,7 +29,7 @@ constexpr Mapping mappings[] = {Mapping::constant, Mapping::interpolated, Mappin
 
 const Material flesh{.youngs_modulus = 40'000, .density = 1060, .damping = 20};
 
-// A body and surfaces that hang on it.
+// A body and the surfaces embedded in it.
 struct Subject {
     std::string about;
     Body body;

@@ -1,5 +1,5 @@
 #version 450 core
-// points.vert: nodes as points, wherever they lie in memory.
+// points.vert: nodes as points.
 layout(location = 0) in vec3 node_position;  // m
 uniform mat4 to_clip;
 

@@ -1,5 +1,4 @@
-// What theory says of the integrators and the bodies, against what the reference solver does
-// (bench/studies.h).
+// The integrators and the bodies of the reference solver against theory (bench/studies.h).
 #include "bench/studies.h"
 #include "palpate/base/error.h"
 #include "palpate/body/cloth.h"
@@ -31,9 +30,8 @@ TEST(Theory, OrdersOfConvergence) {
                 << name_of(integrator) << ", damping " << damping.name;
 }
 
-// Dampers along the springs see the velocities of neighbours, which Verlet's schemes know a half step late
-// only: the whole scheme falls to order 1 there, as docs/integrators.md derives; the Runge-Kutta schemes do
-// not.
+// Dampers along the springs need the velocities of neighbours, which Verlet's schemes know only half a step
+// late: those schemes fall to order 1, as docs/integrators.md derives; the Runge-Kutta schemes do not.
 TEST(Theory, OrdersWithDampersAlongTheSprings) {
     const std::pair<Integrator, int> orders[] = {{Integrator::explicit_euler, 1},
                                                  {Integrator::semi_implicit_euler, 1},
@@ -92,8 +90,7 @@ TEST(Theory, PulsesRunAsInAnIsotropicSolid) {
     EXPECT_LE(std::abs(pulse_speed(true) - 1), 0.03);
 }
 
-// A lattice is too stiff in bending because its outer links lie at the very rim: by about 1 + 1/N² for N
-// cells.
+// A lattice of N cells is too stiff in bending by about 1 + 1/N², because its outer links lie at its surface.
 TEST(Theory, ACantileverSagsAsTimoshenkoSays) {
     EXPECT_LE(std::abs(cantilever_sag(1) - 0.54), 0.03);
     EXPECT_LE(std::abs(cantilever_sag(2) - 0.80), 0.03);

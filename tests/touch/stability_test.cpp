@@ -1,5 +1,5 @@
-// How stiff a wall may be before a hand on it begins to buzz: a whole Touch against the linear sampled system
-// (bench/walls.h), and the defaults against both.
+// The stiffest stable wall: of a whole Touch against the linear sampled-data system (bench/walls.h), and the
+// defaults against both.
 #include "bench/walls.h"
 #include "palpate/touch/device.h"
 #include "palpate/touch/safety.h"
@@ -14,8 +14,8 @@ namespace {
 
 using namespace studies;
 
-// Without a wall's damper, delay or a person's spring the boundary is known: the hand's damper loses as much
-// as half a tick of the wall's spring gives out, K = 2 c / T; each tick of delay counts twice as much.
+// Without damping of the wall and stiffness of the hand the boundary is known: K = 2 c / T, where the hand's
+// damping dissipates what the wall's spring generates by half a tick of lag. A delay adds to that lag.
 TEST(Stability, TheLinearBoundaryIsThatOfTextbooks) {
     for (double rate : {1000.0, 4000.0})
         for (int delay : {0, 1, 2, 7}) {
@@ -26,7 +26,7 @@ TEST(Stability, TheLinearBoundaryIsThatOfTextbooks) {
         }
 }
 
-// To the search's half percent, and as much again for how long it looks.
+// Within the half percent of the search, and as much again because the motion is watched for a limited time.
 TEST(Stability, ATouchIsStableUpToTheLinearBoundary) {
     for (double rate : {500.0, 1000.0, 2000.0})
         for (double damping : {0.0, 1.0, 30.0, 200.0}) {
@@ -54,7 +54,7 @@ TEST(Stability, SoItIsInOtherHands) {
     }
 }
 
-// What is passive is stable in whatever hand, and this one too.
+// A passive wall is stable in any hand, and so in this one.
 TEST(Stability, WhatIsPassiveIsStable) {
     for (double rate : {500.0, 1000.0, 2000.0})
         for (double damping : {0.0, 0.5, 1.0, 3.0, 6.0}) {
@@ -71,7 +71,7 @@ TEST(Stability, ThePassivityObserverAddsToIt) {
     }
 }
 
-// The default, and what a usual device brings a stiffer surface down to.
+// The default stiffness, and that to which a usual device limits stiffer surfaces.
 TEST(Stability, TheDefaultsAreAtMostHalfTheBoundary) {
     const Wall wall;
     for (double stiffness : {Feel{}.stiffness, 0.5 * double(DeviceSpec{}.stiffness)}) {
