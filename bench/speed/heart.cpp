@@ -73,7 +73,11 @@ Subject the_dragon() {
 }
 
 Simulation with(const Hardware::Mover& mover) {
-    return {.backend = mover.backend, .threads = mover.threads, .step = one_step, .force = true};
+    return {.backend = mover.backend,
+            .threads = mover.threads,
+            .step = one_step,
+            .force = true,
+            .shortest_step = 0};
 }
 
 bool on_gpu(const Solver& solver) { return solver.gpu_nodes().positions != 0; }

@@ -1,5 +1,6 @@
 // The tables of the 2012 paper, section 5.
 #include "bench/speed/drawing.h"
+#include "palpate/solver/stability.h"
 
 #include <fmt/format.h>
 
@@ -28,14 +29,15 @@ std::string step_of(int grid, const std::string& mover) {
 std::string copy_of(int grid) { return fmt::format("{}², copying on the GPU", grid); }
 
 // A step, and its nodes drawn.
-Case frame(int grid, const Body& body, const Hardware& hardware, const Hardware::Mover& mover,
-           Integrator integrator) {
+Case frame(int grid, const Body& body, double frequency, const Hardware& hardware,
+           const Hardware::Mover& mover, Integrator integrator) {
     const Simulation how{.backend = mover.backend,
                          .threads = mover.threads,
                          .integrator = integrator,
                          .step = frame_step,
-                         .force = true};
-    std::shared_ptr<Solver> solver = make_solver(body, how, hardware.gl());
+                         .force = true,
+                         .shortest_step = 0};
+    std::shared_ptr<Solver> solver = make_solver(body, how, hardware.gl(), frequency);
     auto points = std::make_shared<Points>(body);
     return repeating(
         frame_of(grid, mover.name, integrator),
@@ -63,20 +65,22 @@ Timings run(int rounds) {
     };
     for (int grid : grids) {
         const Body body = cloth(ivec2(grid), 0.01f, linen);
+        const double frequency = highest_frequency(body);
         std::vector<Case> cases;
         for (const auto& mover : hardware.movers)
             cases.push_back(steps(step_of(grid, mover.name), body, hardware, mover, euler));
         if (hardware.gl()) {
             cases.push_back(copying_on_gpu(copy_of(grid), *hardware.gl()));
             for (const auto& mover : hardware.movers)
-                cases.push_back(frame(grid, body, hardware, mover, euler));
+                cases.push_back(frame(grid, body, frequency, hardware, mover, euler));
         }
         time_and_drop(std::move(cases));
         for (const auto& mover : hardware.movers) {
             if (!hardware.gl() || mover.backend == Backend::reference) continue;
             cases.clear();
             for (const auto& [integrator, name] : names(Integrator{}))
-                if (integrator != euler) cases.push_back(frame(grid, body, hardware, mover, integrator));
+                if (integrator != euler)
+                    cases.push_back(frame(grid, body, frequency, hardware, mover, integrator));
             time_and_drop(std::move(cases));
         }
     }
