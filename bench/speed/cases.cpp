@@ -19,6 +19,7 @@ namespace palpate::speed {
 namespace {
 
 const Material tissue{.youngs_modulus = 10'000, .density = 1040, .damping = 5};
+const Material solid{.youngs_modulus = 10'000, .poisson = 0.45f, .density = 1040, .damping = 5};
 
 Simulation with(Backend backend, int threads = 1, Integrator integrator = Integrator::verlet) {
     return {.backend = backend, .threads = threads, .integrator = integrator};
@@ -100,6 +101,11 @@ std::vector<Case> lattice_cases() {
     add("64³, shares, 2 threads", large, with(Backend::cpu, 2));
     add("ball of 20,000 nodes", lattice(ellipsoid(vec3(0.1f), 60), {.nodes = 20'000, .material = tissue}),
         with(Backend::cpu));
+    add("27³, cells of tissue", lattice(ivec3(27), 0.01f, solid), with(Backend::cpu));
+    add("27³, cells of tissue, 2 threads", lattice(ivec3(27), 0.01f, solid), with(Backend::cpu, 2));
+    add("64³, cells of tissue", lattice(ivec3(64), 0.01f, solid), with(Backend::cpu));
+    add("ball of 20,000 nodes, cells of tissue",
+        lattice(ellipsoid(vec3(0.1f), 60), {.nodes = 20'000, .material = solid}), with(Backend::cpu));
     try {
         const Scene scene = read_scene("brain");
         add("brain of 20,000 nodes", build(scene).models.front().body, with(Backend::cpu));
@@ -117,6 +123,8 @@ std::vector<Case> lattice_cases() {
         if (integrator != Integrator::verlet)
             add(fmt::format("27³, {}", name), box, with(Backend::cpu, 1, integrator));
     add("27³, the scalar reference", box, with(Backend::reference));
+    add("27³, cells of tissue, the scalar reference", lattice(ivec3(27), 0.01f, solid),
+        with(Backend::reference));
     for (Case& of : bullet(box)) cases.push_back(std::move(of));
     return cases;
 }

@@ -92,7 +92,7 @@ Case stepping(std::string name, const Body& body, const Simulation& how, const g
             [=] {
                 return Work{go(steps), nodes * steps};
             },
-            table(body).width * forces,
+            tissue_of(body) ? 0 : table(body).width * forces,
             bytes_of_a_step(simulation.integrator, solver->gpu_nodes().positions != 0),
             double(solver->memory()) / nodes,
             simulation.threads};
