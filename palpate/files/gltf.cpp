@@ -94,7 +94,7 @@ vec3 gltf_normal(vec3 normal) {
 
 GltfContents gltf_contents(const Mesh& mesh, const std::string& file) {
     if (mesh.triangles.empty() || mesh.positions.empty())
-        throw Error("no triangles to write, which glTF cannot say", file, "use .ply");
+        throw Error("no triangles, and glTF needs at least one", file, "use .ply");
     GltfContents contents{
         mesh.positions.size(), mesh.triangles.size(), !mesh.normals.empty(), bounds(mesh), {}, {}};
     if (contents.rest_bytes() > gltf_limit)

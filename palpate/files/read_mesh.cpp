@@ -104,7 +104,7 @@ std::string format_of(const std::filesystem::path& path) {
 
 void check_format(const std::string& format, const std::string& name) {
     if (is_known(format)) return;
-    throw Error(format.empty() ? "no extension that tells the format"
+    throw Error(format.empty() ? "no extension that identifies the format"
                                : "cannot read the mesh format " + in_quotes(format),
                 name,
                 "use .ply, .obj, .stl, .off, .gltf, .glb, .3mf, .x3d or .wrl for a mesh, and .nii, .nrrd, "

@@ -142,7 +142,7 @@ void fill_outside(Reading& reading, const std::filesystem::path& path) {
     for (float& value : reading.values)
         if (!std::isfinite(value)) value = lowest;
     reading.notes.push_back(fmt::format(
-        "{} voxels ({:.2g} %) have no value (NaN, infinite, or marked as outside): {} is taken for them",
+        "{} voxels ({:.2g} %) have no value (NaN, infinite, or marked as outside): they get {}",
         without, 100.0 * double(without) / double(reading.values.size()), lowest));
 }
 

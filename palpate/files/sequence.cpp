@@ -202,7 +202,7 @@ class Morphs : public Sequence {
  private:
     void check_room_for(std::size_t pictures) const {
         if (contents_.bytes(pictures) > gltf_limit)
-            throw Error(fmt::format("{} pictures of {} vertices are more than the 2 GB that fit", pictures,
+            throw Error(fmt::format("{} pictures of {} vertices, which exceed 2 GB", pictures,
                                     contents_.vertices),
                         path_.string(),
                         "write fewer pictures, simplify the surface, or use .vtp, .pc2 or .mdd");

@@ -55,8 +55,8 @@ Range common(const Histogram& histogram, const Volume& volume) {
 
 Histogram histogram(const Volume& volume, int bins) {
     if (volume.values.empty() || bins < 2)
-        throw Error("no values, or fewer than 2 bars to count them in", "the histogram of " + volume.name,
-                    "give it both");
+        throw Error("no values, or fewer than 2 bins", "the histogram of " + volume.name,
+                    "give it at least one value and 2 bins");
     Histogram histogram;
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
     histogram.lowest = *low, histogram.highest = *high;

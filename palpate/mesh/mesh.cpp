@@ -106,9 +106,9 @@ void check(const Mesh& mesh, std::string_view where) {
 }
 
 void compute_tangents(Mesh& mesh) {
-    check(mesh, "the mesh that wants tangents");
+    check(mesh, "the mesh that needs tangents");
     if (mesh.uvs.size() != mesh.positions.size())
-        throw Error("no texture coordinates", "the mesh that wants tangents", "give every vertex some");
+        throw Error("no texture coordinates", "the mesh that needs tangents", "give every vertex some");
     if (mesh.normals.size() != mesh.positions.size()) compute_normals(mesh);
     std::vector<vec3> along_u(mesh.positions.size(), vec3(0)), along_v = along_u;
     for (uvec3 t : mesh.triangles) {

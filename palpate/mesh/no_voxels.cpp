@@ -6,11 +6,11 @@
 namespace palpate {
 
 Remade remake(const Mesh&, float, const std::string& name, const Progress&) {
-    throw missing_part("voxels", name, "mend its walls where it was made");
+    throw missing_part("voxels", name, "repair its walls in the program that made it");
 }
 
 std::size_t decimate(Mesh&, std::size_t) {
-    throw missing_part("voxels", "simplifying a mesh", "simplify it where it was made");
+    throw missing_part("voxels", "simplifying a mesh", "simplify it in the program that made it");
 }
 
 }  // namespace palpate

@@ -83,7 +83,7 @@ class Handy {
 void check_finite(const Mesh& mesh, const std::string& name) {
     for (vec3 p : mesh.positions)
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            throw Error("a position that is not finite", name, "mend it where it was made");
+            throw Error("a position that is not finite", name, "correct it in the program that made it");
 }
 
 bool is_closed(const Mesh& mesh) {
@@ -298,7 +298,7 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
         if (progress) progress(doing, done);
     };
     Steps steps;
-    tell("cleaning the surface", 0);
+    tell("cleaning the mesh", 0);
     clean(mesh, settings, handy.length(settings.weld), steps);
     if (settings.sheet) {
         if (mesh.triangles.empty()) throw Error("no face with an area", settings.name, "look at the file");
@@ -308,7 +308,7 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
     if (is_one_sided_sheet(mesh, one_sided)) throw no_inside(settings);
     std::string why = "as requested";
     if (settings.solid == SolidBy::walls) {
-        tell("mending the walls", 0.2);
+        tell("repairing the walls", 0.2);
         Mesh walls = mesh;
         Steps more = steps;
         why = mend_walls(walls, one_sided, settings, more);
@@ -317,7 +317,7 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
             return std::move(more).of(volume(mesh), handy.unit());
         }
     }
-    tell("making a solid by voxels", 0.5);
+    tell("remeshing by voxels", 0.5);
     make_by_voxels(mesh, settings, handy.length(settings.voxel), why, progress, steps);
     return std::move(steps).of(volume(mesh), handy.unit());
 }

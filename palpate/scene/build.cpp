@@ -52,7 +52,7 @@ std::vector<int> chosen(const Body& body, const Choice& choice, const Scene& sce
                         const std::string& where, const std::string& key, std::vector<std::string>& notes) {
     std::vector<int> all;
     auto add = [&](const char* which, const std::vector<int>& nodes) {
-        if (nodes.empty()) notes.push_back(fmt::format("{}: {}{} holds no node", where, key, which));
+        if (nodes.empty()) notes.push_back(fmt::format("{}: {}{} selects no node", where, key, which));
         all.insert(all.end(), nodes.begin(), nodes.end());
     };
     if (choice.below) add("below", nodes_below(body, *choice.below, down(scene)));
@@ -108,7 +108,7 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
         if (!region.labels.empty()) {
             const auto labelled =
                 nodes_labelled(body, read_labels(region, recipe, scene, where, notes), *region.label);
-            if (labelled.empty()) notes.push_back(where + ": label holds no node");
+            if (labelled.empty()) notes.push_back(where + ": label selects no node");
             nodes.insert(nodes.end(), labelled.begin(), labelled.end());
         }
         for (int node : nodes) factors[std::size_t(node)] = factor_of(region, body);
@@ -385,7 +385,7 @@ Model build_one(const BodyRecipe& wanted, const Scene& scene, const Earlier* ear
         model.surface = std::move(recipe.is_textured() ? made.drawn : made.mesh);
     if (recipe.has_normal_map() && !model.surface.triangles.empty()) compute_tangents(model.surface);
     read_maps(recipe, scene, model);
-    tell(progress, recipe, "hanging the surface on it", 0.9);
+    tell(progress, recipe, "embedding the surface", 0.9);
     if (!model.surface.positions.empty() && !model.surface.triangles.empty())
         model.embedding = embed(model.surface, model.body, recipe.mapping);
     else

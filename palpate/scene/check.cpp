@@ -48,7 +48,7 @@ class Require {
 // `key`: the prefix of the choice's keys, such as "pin.".
 void check(const Choice& choice, const std::string& key, const Require& require) {
     require(key + "radius", choice.near || choice.radius == 0, key + "radius without " + key + "near",
-            "say around which point");
+            "give the point");
     require(key + "box", choice.box.empty() || choice.box.size() == 2, key + "box is not two corners",
             "write [[…], […]]");
 }
@@ -80,11 +80,7 @@ void check_springs(const BodyRecipe& body, const Require& require) {
         require.one_of({"youngs_modulus", "stiffness"},
                        "give it one: brain has about 1e4 Pa, or say the N/m of each spring");
     }
-    require("poisson", body.material.youngs_modulus > 0 || !require.has("poisson"),
-            "poisson without youngs_modulus", "give the modulus too, in Pa");
-    require("links", body.material.poisson == 0 || !require.has("links"),
-            "links beside poisson, where it has no effect", "remove it");
-    require("bending", body.sheet || !require.has("bending"), "bending of what is no sheet of triangles",
+    require("bending", body.sheet || !require.has("bending"), "bending of a body that is not a sheet of triangles",
             "give cloth flexion springs, or use sheet = true with a surface");
     if (body.springs)
         require("springs", body.springs->structural > 0, "springs without structural ones",
@@ -110,7 +106,7 @@ void check_maps(const BodyRecipe& body, const Require& require) {
     const std::string map = require.has("colour_map")   ? "colour_map"
                             : require.has("normal_map") ? "normal_map"
                                                         : "weave";
-    require(map, !body.surface.empty() || body.cloth, map + " on what has no texture coordinates",
+    require(map, !body.surface.empty() || body.cloth, map + " on a body without texture coordinates",
             "use a surface that has them, or cloth");
     for (const char* key : {"faces", "smooth"})
         require(key, key == std::string("faces") ? body.faces == 0 : body.smooth.value_or(0) == 0,
@@ -250,7 +246,7 @@ void check(const CameraRecipe& camera, const std::set<std::string>& names, const
 void check_name(const std::string& name, const Lines& lines, const SceneSource& source) {
     for (unsigned char c : name)
         if (c < ' ' || std::string_view("/\\,\"").find(char(c)) != std::string_view::npos)
-            throw Error("a name with a slash, a comma, a quote or an unprintable letter",
+            throw Error("a name with a slash, a comma, a quote or an unprintable character",
                         lines.where("name", source.file), "choose another");
 }
 

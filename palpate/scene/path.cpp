@@ -92,7 +92,7 @@ Path make_path(const std::vector<std::vector<double>>& rows, Rows kind, const Ro
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const std::vector<double>& v = rows[i];
         if (v.size() == 7 && !poses)
-            fail(i, "has a rotation, which means nothing there", "keep four numbers");
+            fail(i, "has a rotation, which has no effect there", "keep four numbers");
         if (v.size() != 4 && v.size() != 7)
             fail(i, poses ? "is not four or seven numbers" : "is not four numbers",
                  poses ? "write t, x, y, z and, if it turns, rx, ry, rz" : "write t, x, y, z");
@@ -104,7 +104,7 @@ Path make_path(const std::vector<std::vector<double>>& rows, Rows kind, const Ro
         Waypoint point{v[0], vec3(v[1], v[2], v[3])};
         if (v.size() == 7) point.rotation = vec3(v[4], v[5], v[6]);
         if (!(glm::length(point.position) < 1e6f && glm::length(point.rotation) < 1e6f))
-            fail(i, "leads out of the world", "keep it within 1000 km and a million degrees");
+            fail(i, "is out of range", "keep it within 1000 km and a million degrees");
         path.push_back(point);
     }
     return path;

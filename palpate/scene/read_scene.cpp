@@ -191,7 +191,7 @@ void read_shape(Reader& read, Box& box) {
     read("rotate", rotate);
     read("rounding", box.rounding, zero_or_more("m"));
     if (read.has("half") == read.has("size"))
-        read.fail("a box wants exactly one of half and size", "give it one of them");
+        read.fail("a box needs exactly one of half and size", "give it one of them");
     if (read.has("size")) box.half = 0.5f * size;
     const mat3 axes = turn(rotate);
     box.axes = {axes[0], axes[1], axes[2]};
@@ -211,7 +211,7 @@ void read_shape(Reader& read, Polygon& polygon, ColliderRecipe& recipe) {
     read("triangles", triangles);
     read("thickness", polygon.thickness, extent);
     if (read.has("surface") == read.has("triangles"))
-        read.fail("a polygon wants exactly one of surface and triangles", "give it one of them");
+        read.fail("a polygon needs exactly one of surface and triangles", "give it one of them");
     if (read.has("triangles") && (read.has("units") || read.has("rotate") || read.has("move")))
         read.fail("a polygon's units, rotate and move are for a surface", "remove them");
     if (read.has("triangles") && triangles.empty())
@@ -285,7 +285,7 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     auto refuse = [&](std::initializer_list<const char*> keys, const std::string& remedy) {
         for (const char* key : keys)
             if (const toml::node* node = read.get(key))
-                read.fail(*node, fmt::format("\"{}\" means nothing to a {}", key, name_of(tool.kind)),
+                read.fail(*node, fmt::format("\"{}\" is not a key of a {}", key, name_of(tool.kind)),
                           remedy);
     };
     if (tool.kind == ToolKind::drag)
@@ -304,7 +304,7 @@ void read_wind(Reader& read, Scene& scene) {
     read("velocity", velocity, any_number("m/s", "a storm has 25 m/s").usual(0, 100));
     read_path_value(read, scene.wind, Rows::places, scene);
     if (velocity.has_value() == read.has("path"))
-        read.fail("wind wants exactly one of velocity and path", "give it one of them");
+        read.fail("wind needs exactly one of velocity and path", "give it one of them");
     if (velocity) scene.wind = {{0, *velocity}};
     read("density", scene.simulation.air, air);
 }
@@ -358,7 +358,7 @@ void read_fields(Reader& read, Scene& scene) {
     });
     read.table("wind", [&](Reader& inside) {
         if (still_air && inside.has("density"))
-            inside.fail("the air's density is said twice", "remove simulation.air");
+            inside.fail("the air's density is given twice", "remove simulation.air");
         scene.simulation.air = usual_air;
         read_wind(inside, scene);
     });
@@ -456,7 +456,7 @@ void add_one(toml::array& tables, const std::string& key, const Change& change, 
         const std::string names = names_in(tables), first = names.substr(0, names.find(','));
         const std::string add = fmt::format("{}.{}={{ … }} to add one", list, tables.size() + 1);
         const bool is_name = find_named(tables, key) != nullptr;
-        source.fail(0, one || is_name ? "it names no key" : fmt::format("it does not say which {}", list),
+        source.fail(0, one || is_name ? "it does not name a key" : fmt::format("it does not say which {}", list),
                     tables.empty() ? "write " + add
                                    : fmt::format("write {}.{}.{}={}, or {}", list, is_name ? key : first,
                                                  one || is_name ? "KEY" : key, one ? "…" : text, add));
@@ -557,7 +557,7 @@ std::string advice_on(const std::string& text, int number) {
             std::string("TtYyo").find(found[2].str()[0]) != std::string::npos && found[2] != "off" ? "true"
                                                                                                    : "false");
     if (is(key + R"(([A-Za-z_/.~][^"'#=]*?))" + end))
-        return fmt::format("write texts in quotes: {} = \"{}\"", std::string(found[1]),
+        return fmt::format("write strings in quotes: {} = \"{}\"", std::string(found[1]),
                            std::string(found[2]));
     return "correct the TOML there";
 }

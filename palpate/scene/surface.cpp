@@ -56,7 +56,7 @@ Mesh from_volume(Work& work) {
     const BodyRecipe& recipe = work.recipe;
     const Volume volume =
         read_volume(find_data(recipe.volume, work.folder), recipe.units, &work.result.notes);
-    work.tell("finding the surface", 0.1);
+    work.tell("extracting the isosurface", 0.1);
     const float iso = recipe.iso ? *recipe.iso : suggested(volume, work.result.notes);
     Mesh mesh = isosurface(volume, iso);
     work.did(fmt::format("surface at {} of {} x {} x {} voxels: {} faces", iso, volume.dims.x, volume.dims.y,

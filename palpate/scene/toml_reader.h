@@ -264,7 +264,7 @@ class Reader {
 
     void read(std::string_view key, const toml::node& node, std::string& value) const {
         const auto text = node.value_exact<std::string>();
-        if (!text) wrong(key, node, "a text", "write it in quotes");
+        if (!text) wrong(key, node, "a string", "write it in quotes");
         if (text->empty()) fail(node, full(key) + " is empty", "write something there, or remove it");
         value = *text;
     }
@@ -278,7 +278,7 @@ class Reader {
         read_number(key, node, number, "a whole number");
         constexpr double least = std::numeric_limits<int>::min(), most = std::numeric_limits<int>::max();
         if (number != std::round(number)) wrong(key, node, "a whole number");
-        if (number < least || number > most) wrong(key, node, "a whole number of a sensible size");
+        if (number < least || number > most) wrong(key, node, "a whole number of a valid size");
         value = int(number);
     }
     void read(std::string_view key, const toml::node& node, double& value) const {
@@ -288,7 +288,7 @@ class Reader {
         double wide = 0;
         read(key, node, wide);
         value = float(wide);
-        if (!std::isfinite(value)) wrong(key, node, "a number of a sensible size");
+        if (!std::isfinite(value)) wrong(key, node, "a number of a valid size");
     }
     template <int L, class T>
     void read(std::string_view key, const toml::node& node, glm::vec<L, T>& value) const {

@@ -271,7 +271,7 @@ Remade remake(const Mesh& mesh, float voxel, const std::string& name, const Prog
     constexpr int block = 32;
     const ivec3 blocks = (depths.dims + block - 1) / block;
     for (int z = 0; z < blocks.z; ++z) {
-        if (progress) progress("making a solid by voxels", double(z) / blocks.z);
+        if (progress) progress("remeshing by voxels", double(z) / blocks.z);
         parallel_for(std::size_t(blocks.y) * blocks.x, 1, [&](std::size_t i) {
             filler.fill(block * ivec3(int(i) % blocks.x, int(i) / blocks.x, z), block);
         });

@@ -125,7 +125,7 @@ TEST(Gltf, PackedByMeshoptimizer) {
     extension["filter"] = "EXPONENTIAL";
     expect_box(file.read(), vec3(0), vec3(2, 3, 5), 30);
     extension["byteStride"] = 10;
-    EXPECT_HAS(file.refused(), "a stride of 10 in meshopt's compression, which is no multiple of 4");
+    EXPECT_HAS(file.refused(), "a stride of 10 in meshopt's compression, which is not a multiple of 4");
     extension["byteStride"] = 12;
     extension["count"] = 1'000'000'000'000;
     EXPECT_HAS(file.refused(), "more than the file's size warrants");

@@ -325,7 +325,7 @@ TEST_F(ReadNoted, UnpacksWhateverAnNrrdIsPackedIn) {
     EXPECT_HAS(error("bzip2", raw), "said to be a bzip2 and are none");
     EXPECT_HAS(error("gzip", raw), "said to be a gzip and are none");
     EXPECT_HAS(error("hex", "0g"), "hexadecimal");
-    EXPECT_HAS(error("text", "1 2 three"), "\"three\" for a number");
+    EXPECT_HAS(error("text", "1 2 three"), "\"three\" instead of a number");
     EXPECT_HAS(error("text", "1 2 3"), "3 numbers of voxels instead of 24");
     EXPECT_HAS(error("zrl", raw), "the encoding \"zrl\", which is not read");
     std::string damaged = gzip(raw);
@@ -387,7 +387,7 @@ TEST_F(ReadNoted, SaysWhatItLeavesOutOfAMetaImage) {
     EXPECT_LE(glm::distance(volume.origin, vec3(0.001f, 0.002f, 0.003f)), 1e-8f);
     EXPECT_HAS(
         volume_error(scratch / "a.mha", "ObjectType = Tube\nNDims = 3\nNPoints = 3\nPoints =\n1 2 3\n"),
-        "no image (its ObjectType is \"Tube\")");
+        "not an image (its ObjectType is \"Tube\")");
     EXPECT_HAS(volume_error(scratch / "a.mha", ""), "an empty file");
 }
 
@@ -454,7 +454,7 @@ TEST_F(ReadNoted, TakesEveryNameOfAKindOfNumber) {
          changed(nrrd("short", "raw"), "endian: little\n", "") + bytes_of<std::int16_t>(count_up()));
     EXPECT_HAS(notes, "order of bytes: little-endian is assumed");
     read_nrrd("spacings: 1 1 1\n");
-    EXPECT_HAS(notes, "does not say what is left, back and up");
+    EXPECT_HAS(notes, "does not state its orientation");
     const Volume scaled =
         read_meta("ElementToIntensityFunctionSlope = 2\nElementToIntensityFunctionOffset = -3");
     EXPECT_EQ(scaled.values[5], 7);

@@ -376,7 +376,7 @@ TEST(ReadMesh, WhatIsWrongIsNamedFirst) {
     };
     EXPECT_HAS(error(scratch / "gone"), "cannot find the file");
     EXPECT_HAS(error(scratch / "gone.stl"), "cannot find the file");
-    EXPECT_HAS(mesh_error(scratch / "plain", "x"), "no extension that tells the format");
+    EXPECT_HAS(mesh_error(scratch / "plain", "x"), "no extension that identifies the format");
     EXPECT_HAS(mesh_error(scratch / "a.vti", "x"), ".nii, .nrrd");
     for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off", "a.glb", "a.3mf", "a.x3d", "a.wrl", "a.fbx"})
         EXPECT_HAS(parse_error(name, ""), "an empty file") << name;
@@ -394,7 +394,7 @@ TEST(ReadMesh, ContentOfAnotherKindIsNamed) {
     const std::string words =
         "A text that tells of a mesh, at some length, and is none. It goes on and on, so that "
         "eighty-four bytes are there.";
-    EXPECT_HAS(parse_error("a.stl", words), "a text that is no STL");
+    EXPECT_HAS(parse_error("a.stl", words), "a text that is not STL");
     std::vector<std::string> notes;
     const char* const stl =
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"

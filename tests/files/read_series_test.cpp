@@ -195,7 +195,7 @@ TEST_F(ReadSeries, TakesOneOfSeveralEchoes) {
     const Volume first = read(folder);
     ASSERT_EQ(first.dims, ivec3(wide, high, 4));
     EXPECT_EQ(first.values[0], 0);
-    EXPECT_HAS(all_notes(), "4 volumes in one place, told apart by EchoTime and ImageType");
+    EXPECT_HAS(all_notes(), "4 volumes in one place, distinguished by EchoTime and ImageType");
     const Volume named = read(folder / "e1t1z2");
     EXPECT_EQ(named.values[0], 3000);
     EXPECT_EQ(named.values.back(), 3000 + 300 + area - 1);
@@ -203,7 +203,7 @@ TEST_F(ReadSeries, TakesOneOfSeveralEchoes) {
     for (int z = 0; z < 4; ++z)
         for (int e = 0; e < 2; ++e) std::filesystem::remove(folder / fmt::format("e{}t1z{}", e, z));
     EXPECT_EQ(read(folder / "e1t0z0").values[0], 1000);
-    EXPECT_HAS(all_notes(), "told apart by EchoTime:");
+    EXPECT_HAS(all_notes(), "distinguished by EchoTime:");
 }
 
 TEST_F(ReadSeries, TellsVolumesApartByTheirNumbersWhereNothingElseDoes) {
@@ -446,7 +446,7 @@ TEST_F(ReadSeries, LooksValuesUpInATable) {
     EXPECT_EQ(volume.values[area + 2], 5);
     EXPECT_EQ(volume.values[area + 3], 9);
     with(table({4, 101, 16}, {7, 900}));
-    EXPECT_HAS(error(folder), "an incomplete table of values (ModalityLUTSequence)");
+    EXPECT_HAS(error(folder), "an incomplete lookup table (ModalityLUTSequence)");
 }
 
 TEST_F(ReadSeries, SaysThatItReadsNoFloatPixels) {
@@ -519,7 +519,7 @@ TEST_F(ReadSeries, ReadsTheSlicesOfOneFile) {
             EXPECT_LE(glm::distance(volume.origin, vec3(-0.01f, -0.02f, 0.03f)), 1e-8f);
             for (int z = 0; z < 5; ++z) EXPECT_EQ(volume.at(1, 0, z), float(1000 * z + 100 * z + 1));
             EXPECT_EQ(notes.size(), std::size_t(twice)) << all_notes();
-            if (twice) EXPECT_HAS(all_notes(), "2 volumes in one place, told apart by TemporalPositionIndex");
+            if (twice) EXPECT_HAS(all_notes(), "2 volumes in one place, distinguished by TemporalPositionIndex");
         }
     }
 }

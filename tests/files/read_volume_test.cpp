@@ -247,7 +247,7 @@ TEST(ReadVolume, TakesTheSformBeforeTheQform) {
         const Volume v = read_noted(scratch / "a.nii", file.bytes(), notes);
         EXPECT_LE(glm::distance(v.origin, vec3(-0.01f, -0.02f, 0.03f)), 1e-8f) << code;
         EXPECT_EQ(v.direction, mat3(-1, 0, 0, 0, -1, 0, 0, 0, 1));
-        EXPECT_HAS(notes, "it states two places, up to 44.6 mm apart") << "(10, 24, 30) and (-5, -2, -3)";
+        EXPECT_HAS(notes, "it states two placements, up to 44.6 mm apart") << "(10, 24, 30) and (-5, -2, -3)";
         EXPECT_HAS(notes, "the sform (code " + std::to_string(code) + ") is taken, not the qform (code 1)");
     }
     Nifti file = small();
@@ -280,7 +280,7 @@ TEST(ReadVolume, LiesAroundTheOriginWhereNoPlaceIsStated) {
     const Volume v = read_noted(scratch / "a.nii", small().bytes(), notes);
     EXPECT_LE(glm::distance(v.origin, 1e-3f * vec3(-0.5f, 2, -4.5f)), 1e-8f);
     EXPECT_EQ(v.direction, mat3(1, 0, 0, 0, -1, 0, 0, 0, 1));
-    EXPECT_HAS(notes, "it does not say how it lies");
+    EXPECT_HAS(notes, "it does not state its orientation");
     const Volume odd =
         read_noted(scratch / "a.nii", small().set<float>(80, 0).set<float>(84, -2).bytes(), notes);
     EXPECT_LE(glm::distance(odd.spacing, vec3(0.001f, 0.002f, 0.003f)), 1e-8f);

@@ -235,7 +235,7 @@ TEST(Obj, ALastFaceThatIsCutOff) {
     EXPECT_TRUE(notes.empty());
     parse("a.obj", text, &notes);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_HAS(notes[0], "the last line may be cut off");
+    EXPECT_HAS(notes[0], "the last line may be truncated");
 }
 
 // ---- PLY ----
@@ -415,7 +415,7 @@ TEST(Stl, TextAsStrangersWriteIt) {
     expect_brick("a.stl", stl_text("facet normal 0 0 1", "facet"));
     expect_brick("a.stl", stl_text("facet normal 0 0 1", "facet normal"));
     expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\ncolor 0.7 0.7 0.7\nfacet"),
-                 "read over 1 line outside of any shape, the first with \"color\"");
+                 "ignored 1 line outside of any facet, the first with \"color\"");
     expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\n# in mm\nfacet"), "the first with \"#\"");
     expect_brick("a.stl", stl_text("endfacet", "attribute 0 vertex 1 2 3\nendfacet"), "read over 12 lines");
     expect_brick("a.stl", "# by hand\n\n" + stl_text(), "read over 1 line");

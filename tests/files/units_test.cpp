@@ -61,7 +61,7 @@ TEST(ThreeMf, PartsStandWhereTheirTransformsSay) {
     EXPECT_LE(glm::distance(bounds(mesh).high, vec3(0.010f, 0.003f, 0)), 1e-8f);
     EXPECT_LE(std::abs(volume(mesh) - 120e-9), 1e-13);
     EXPECT_HAS(refused(model(one, "<item objectid='1' transform='1 0 0'/>")), "not 12 numbers in line 2");
-    EXPECT_HAS(refused(model(one, "<item objectid='7'/>")), "\"7\" that is nowhere");
+    EXPECT_HAS(refused(model(one, "<item objectid='7'/>")), "\"7\" that is missing");
     EXPECT_HAS(
         refused(model("<object id='1'><components><component objectid='1'/></components></object>", built)),
         "put together of themselves");

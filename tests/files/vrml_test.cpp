@@ -165,7 +165,7 @@ TEST(Vrml, RefusesWhatItCannotTakeRightly) {
     EXPECT_HAS(with("0 0 0 1 0 0 0 1 0", "0 1 3 -1"), "point 3 of 3");
     EXPECT_HAS(with("0 0 0 1 0 0 0 1 0", "0 1 -2 -1"), "point -2 of 3");
     EXPECT_HAS(with("0 0 0 1 0 0 0 1", "0 1 0 -1"), "less than three");
-    EXPECT_HAS(with("0 0 0 1 0 x 0 1 0", "0 1 2 -1"), "\"x\" for a number in line 2");
+    EXPECT_HAS(with("0 0 0 1 0 x 0 1 0", "0 1 2 -1"), "\"x\" instead of a number in line 2");
     EXPECT_HAS(with("0 0 0 1 0 nan 0 1 0", "0 1 2 -1"), "vertex 2 of 3 not finite");
     EXPECT_HAS(with("", "0 1 2 -1"), "point 0 of 0");
     EXPECT_HAS(refused(shape + " Shape { geometry IndexedFaceSet { coord NULL coordIndex [ 0 1 2 ] } }"),

@@ -179,7 +179,7 @@ TEST(X3d, TextureCoordinatesByCorner) {
                               &notes);
     EXPECT_TRUE(astray.uvs.empty());
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_HAS(notes[0], "1 corners name ones that are not there");
+    EXPECT_HAS(notes[0], "1 corners refer to missing ones");
 }
 
 // Their volumes are those of prisms, pyramids and rings of 32 sides.
@@ -296,7 +296,7 @@ TEST(X3d, RefusesWhatIsDamaged) {
     EXPECT_HAS(parse_error("a.x3d", with_attributes("'9 9 9'")), "XML with defaults of its own");
     expect_box(parse(with_attributes("#IMPLIED")), vec3(0), vec3(2, 3, 5), 30);
     expect_box(parse(file("<x:/>" + shape)), vec3(0), vec3(2, 3, 5), 30);  // no name behind the prefix
-    EXPECT_HAS(parse_error("a.x3d", "<svg></svg>"), "XML that is no X3D");
+    EXPECT_HAS(parse_error("a.x3d", "<svg></svg>"), "XML that is not X3D");
     EXPECT_HAS(refused("<Shape>\n</Box>"), "mismatched tag) in line 5");
     EXPECT_HAS(refused("<Shape><IndexedFaceSet coordIndex='0 { 1'/></Shape>"),
                "for a name or numbers in line 4");

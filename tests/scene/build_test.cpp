@@ -323,7 +323,7 @@ TEST(Build, RegionsSayHowStiffTheyAreInThreeWays) {
     EXPECT_EQ(strengthened(both, 5), (std::vector<int>{0, 1}));
     EXPECT_EQ(strengthened(both, 3).size(), 35u);
     const Models none = make(cube + "[[body.region]]\nbox = [[8, 8, 8], [9, 9, 9]]\nfactor = 3\n");
-    EXPECT_TRUE(has_note(none, "cube, region 1: box holds no node"));
+    EXPECT_TRUE(has_note(none, "cube, region 1: box selects no node"));
     EXPECT_TRUE(strengthened(none.models[0].body, 3).empty());
 }
 
@@ -366,7 +366,7 @@ TEST(Build, LabelsTurnAndMoveWithTheBody) {
     EXPECT_TRUE(has_note(make(cube + region, scratch / "."), "cube, region 1, labels: 1 voxels"));
     EXPECT_TRUE(has_note(
         make(cube + "[[body.region]]\nlabels = \"labels.nii\"\nlabel = 9\nfactor = 2\n", scratch / "."),
-        "label holds no node"));
+        "label selects no node"));
     EXPECT_THROW(make(cube + "[[body.region]]\nlabels = \"none.nii\"\nlabel = 9\nfactor = 2\n"), Error);
 }
 

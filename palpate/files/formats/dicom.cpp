@@ -354,7 +354,7 @@ Group of_one_time(Group slices, const std::filesystem::path& named, std::vector<
     }
     const Group& taken = taken_of(volumes, named);
     notes.push_back(fmt::format(
-        "{} volumes in one place, told apart by {}: {} taken; name a file of another "
+        "{} volumes in one place, distinguished by {}: {} taken; name a file of another "
         "to have that",
         volumes.size(), by, named.empty() ? "that of " + name(taken[0]) : "the one that was named"));
     return taken;

@@ -72,10 +72,10 @@ dvec3 origin_for(const Draft& draft, double scale, const std::string& name, std:
     const BoxOfPoints box = box_of_points(draft.positions);
     if (!too_far_for_floats(box)) return dvec3(0);
     if (draft.single)
-        throw Error("a mesh too far from the origin for the digits", name, "move it to the origin first");
+        throw Error("a mesh so far from the origin that its shape is already lost", name, "move it to the origin first");
     const dvec3 origin = box.low + 0.5 * (box.high - box.low), by = 0.0 - origin * scale;
     notes.push_back(fmt::format(
-        "moved to the origin by ({:.15g}, {:.15g}, {:.15g}) m: so far from it the shape would be lost", by.x,
+        "moved to the origin by ({:.15g}, {:.15g}, {:.15g}) m: so far from it, floats would lose the shape", by.x,
         by.y, by.z));
     return origin;
 }

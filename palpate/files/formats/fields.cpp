@@ -60,7 +60,7 @@ std::vector<std::string> of_pattern(const std::string& data, const std::filesyst
     if (std::ranges::all_of(range, is_number) && count >= 1 && count <= most_files)
         for (int i = 0; i < int(count); ++i)
             if (const auto name = numbered(pattern, int(range[0] + i * range[2]))) names.push_back(*name);
-    if (names.empty()) refuse("a pattern of files that is not understood, " + in_quotes(data) + ",", path);
+    if (names.empty()) refuse("an invalid pattern of file names, " + in_quotes(data) + ",", path);
     return names;
 }
 
@@ -88,7 +88,7 @@ std::vector<double> Fields::numbers(const std::string& name, std::size_t least,
     std::string_view rest = text;
     for (std::string_view one = word(rest); !one.empty(); one = word(rest)) {
         const auto number = spelled(one);
-        if (!number) refuse(fmt::format("{} for a number of \"{}\"", in_quotes(one), name), path);
+        if (!number) refuse(fmt::format("{} instead of a number in \"{}\"", in_quotes(one), name), path);
         numbers.push_back(*number);
     }
     if (has(name) && numbers.size() < least)

@@ -295,7 +295,7 @@ Slice damaged(Slice slice) {
 Slice packed(Slice slice, const gdcm::File& file) {
     const std::string syntax = text(file.GetHeader(), Tag(0x0002, 0x0010));
     return troubled(std::move(slice),
-                    fmt::format("pixels that GDCM cannot unpack (transfer syntax {})", syntax),
+                    fmt::format("pixels that GDCM cannot decompress (transfer syntax {})", syntax),
                     "export it uncompressed, as Explicit VR Little Endian");
 }
 
@@ -314,10 +314,10 @@ std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
     const std::string name = kind.empty() ? "a data set" : kind_of(kind);
     const gdcm::MediaStorage::MSType type = gdcm::MediaStorage::GetMSType(kind.c_str());
     if (name.find("Segmentation") != std::string::npos || name.find("RT Structure Set") != std::string::npos)
-        return troubled(plain, "labels or outlines and no scan (" + name + ")",
+        return troubled(plain, "labels or contours, not a scan (" + name + ")",
                         "turn it into a label volume, as 3D Slicer does");
     if (type != gdcm::MediaStorage::MS_END && !gdcm::MediaStorage::IsImage(type))
-        return troubled(plain, "no picture (" + name + ")", "name a file of slices");
+        return troubled(plain, "not an image (" + name + ")", "name a file of slices");
     const gdcm::PixelFormat format = gdcm::ImageHelper::GetPixelFormatValue(file);
     const gdcm::PhotometricInterpretation light = gdcm::ImageHelper::GetPhotometricInterpretationValue(file);
     if (format.GetSamplesPerPixel() != 1 || light == gdcm::PhotometricInterpretation::PALETTE_COLOR)
@@ -330,7 +330,7 @@ std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
         return troubled(plain, "float pixels (FloatPixelData), which are not read,",
                         "export it with whole numbers, or as NIfTI or NRRD");
     if (set.FindDataElement(tables) && table_of(set, is_signed(format)).values.empty())
-        return troubled(plain, "an incomplete table of values (ModalityLUTSequence)",
+        return troubled(plain, "an incomplete lookup table (ModalityLUTSequence)",
                         "export it with RescaleSlope and RescaleIntercept");
     return std::nullopt;
 }
@@ -429,7 +429,7 @@ std::vector<Slice> scan_file(const std::filesystem::path& file) try {
     if (readable && plain.pixels_at >= size) {
         if (const auto slice = unusable(reader.GetFile(), plain)) return {*slice};
         plain.damaged = true;
-        return {troubled(plain, "no pixels (it is no picture, or it is cut off)", "name a file of slices")};
+        return {troubled(plain, "no pixels (it is not an image, or it is truncated)", "name a file of slices")};
     }
     const std::string syntax = text(reader.GetFile().GetHeader(), Tag(0x0002, 0x0010));
     if (!syntax.empty() && gdcm::TransferSyntax::GetTSType(syntax.c_str()) == gdcm::TransferSyntax::TS_END)

@@ -68,7 +68,7 @@ class Gltf {
             if (!name.is_string()) broken("a required extension without a name");
             const std::string_view text = name.get_ref<const std::string&>();
             if (!may_be_required(text))
-                file_.source().broken("a glTF that cannot be understood without the extension " +
+                file_.source().broken("a glTF that requires the extension " +
                                           in_quotes(text) + ", which is not read,",
                                       "export it without that");
         }
@@ -128,7 +128,7 @@ class Gltf {
         std::vector<bool> hangs(nodes.size());
         for (const Json& node : nodes)
             for (std::size_t child : nodes_in(node, "children")) {
-                if (hangs[child]) broken(fmt::format("node {}, which hangs on two others", child));
+                if (hangs[child]) broken(fmt::format("node {}, which has two parents,", child));
                 hangs[child] = true;
             }
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -141,7 +141,7 @@ class Gltf {
             for (std::size_t child : nodes_in(node, "children")) worlds_[child] = worlds_[i] * worlds_[child];
             return true;
         });
-        if (placed < nodes.size()) broken("nodes that hang on themselves");
+        if (placed < nodes.size()) broken("a cycle of nodes");
     }
 
     // What the file shows: the nodes of its scene, or all.
@@ -188,7 +188,7 @@ class Gltf {
         const auto scales = file_.vectors_of<dvec3>(field(given, "SCALE"));
         const std::size_t count = std::max({moves.size(), turns.size(), scales.size()});
         for (std::size_t each : {moves.size(), turns.size(), scales.size()})
-            if (each != 0 && each != count) broken("instances with places of different number");
+            if (each != 0 && each != count) broken("instances whose attributes differ in number");
         std::vector<Place> places(std::max<std::size_t>(count, 1));
         for (std::size_t i = 0; i < count; ++i) {
             if (!turns.empty()) places[i].turn = turn_by(turns[i]);
@@ -319,7 +319,7 @@ class Gltf {
             const double weight = weights[k].is_number() ? weights[k].get<double>() : 0;
             if (weight == 0 || moves.is_null()) continue;
             const std::vector<T> ways = file_.vectors_of<T>(moves);
-            if (ways.size() != values.size()) broken("a morph target of another number of vertices");
+            if (ways.size() != values.size()) broken("a morph target with another number of vertices");
             for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * ways[i];
         }
         return values;
@@ -334,7 +334,7 @@ class Gltf {
             const Json& shares = field(attributes, fmt::format("WEIGHTS_{}", set));
             if (joints.is_null() || shares.is_null()) break;
             const auto on = file_.vectors_of<glm::dvec4>(joints), by = file_.vectors_of<glm::dvec4>(shares);
-            if (on.size() != count || by.size() != count) broken("a skin of another number of vertices");
+            if (on.size() != count || by.size() != count) broken("a skin with another number of vertices");
             for (std::size_t i = 0; i < count; ++i)
                 for (int k = 0; k < 4; ++k) {
                     if (by[i][k] == 0) continue;
@@ -436,7 +436,7 @@ class Gltf {
         if (!has_uvs_ && !draft_.uvs.empty())
             draft_.notes.push_back("left the texture coordinates out: some parts have none");
         if (!has_uvs_) draft_.uvs.clear();
-        note(hidden_, "left out {} (KHR_node_visibility), with all that hangs there", "invisible node");
+        note(hidden_, "left out {} (KHR_node_visibility), with everything below", "invisible node");
         note(unfinished_, "left out {} beyond the last whole triangle", "corner");
         note(uncopied_, "left out the copies (EXT_mesh_gpu_instancing) of {}", "skinned surface");
     }

@@ -104,7 +104,7 @@ GltfFile::GltfFile(Source source) : source_(std::move(source)), budget_(source_)
     }
     json_ = Json::parse(text, nullptr, false);
     if (json_.is_discarded()) broken("JSON that is damaged or truncated");
-    if (!json_.is_object()) broken("JSON that is no glTF");
+    if (!json_.is_object()) broken("JSON that is not glTF");
 }
 
 // Returns its JSON.
@@ -140,14 +140,14 @@ const GltfFile::Json& GltfFile::list_of(const Json& object, std::string_view nam
     static const Json none = Json::array();
     const Json& found = field(object, name);
     if (found.is_null()) return none;
-    if (!found.is_array()) broken(fmt::format("\"{}\" that is no list", name));
+    if (!found.is_array()) broken(fmt::format("\"{}\" that is not a list", name));
     return found;
 }
 
 std::size_t GltfFile::whole(const Json& value, std::string_view what, std::size_t fallback) const {
     if (value.is_null()) return fallback;
     if (!value.is_number() || !is_whole(value.get<double>(), 0, 0x1p53))
-        broken(fmt::format("{} that is no whole number", what));
+        broken(fmt::format("{} that is not a whole number", what));
     return std::size_t(value.get<double>());
 }
 
@@ -162,7 +162,7 @@ std::size_t GltfFile::number_in(std::string_view name, const Json& number) const
 std::string_view GltfFile::buffer(std::size_t number) {
     const Json& uri = field(list("buffers")[number], "uri");
     if (uri.is_null() && number == 0 && binary_) return *binary_;
-    if (!uri.is_string()) broken(fmt::format("buffer {}, which is nowhere,", number));
+    if (!uri.is_string()) broken(fmt::format("buffer {}, which has no data,", number));
     const auto [known, is_new] = buffers_.try_emplace(number);
     if (!is_new) return known->second;
     const std::string_view text = uri.get_ref<const std::string&>();
@@ -211,10 +211,10 @@ std::string GltfFile::unpack(const Json& packing, std::size_t stride) {
     const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
     const std::size_t count = whole(field(packing, "count"), "a count", 0);
     const std::string mode = text_of(packing, "mode", ""), filter = text_of(packing, "filter", "NONE");
-    if (stride == 0 || stride > 256) broken("a stride in meshopt's compression that cannot be");
+    if (stride == 0 || stride > 256) broken("an invalid stride in meshopt's compression");
     const bool vertices = mode == "ATTRIBUTES";
     if (vertices && stride % 4 != 0)
-        broken(fmt::format("a stride of {} in meshopt's compression, which is no multiple of 4,", stride));
+        broken(fmt::format("a stride of {} in meshopt's compression, which is not a multiple of 4,", stride));
     if (!vertices && (mode != "TRIANGLES" || count % 3 != 0) && mode != "INDICES")
         broken("an unknown mode of meshopt's compression, " + in_quotes(mode) + ",");
     if (!vertices && stride != 2 && stride != 4) broken("indices of an impossible size");
@@ -318,7 +318,7 @@ std::vector<double> GltfFile::numbers_of(const Json& which, std::string_view sha
     std::vector<double> numbers;
     if (const auto known = draco_numbers_.find(number); known != draco_numbers_.end()) {
         if (known->second.size() != count * components)
-            broken("another number of vertices in what Draco packed");
+            broken("a Draco mesh with another number of vertices");
         budget_.spend(count, components * sizeof(double));
         numbers = known->second;
     } else if (!field(accessor, "bufferView").is_null()) {

@@ -91,7 +91,7 @@ Reading read_metaimage(const std::filesystem::path& path) {
     const auto in = open_file(path);
     const Fields fields = read_fields(*in, '=', "elementdatafile", path);
     if (const std::string kind = fields["objecttype"]; !kind.empty() && small_letters(kind) != "image")
-        refuse("no image (its ObjectType is " + in_quotes(kind) + ")", path,
+        refuse("not an image (its ObjectType is " + in_quotes(kind) + ")", path,
                "give a file whose ObjectType is Image");
     const std::string data = fields["elementdatafile"];
     if (data.empty() || !fields.has("dimsize")) refuse_start("MetaImage", path);

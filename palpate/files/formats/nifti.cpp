@@ -115,7 +115,7 @@ Header read_header(std::istream& in, const std::filesystem::path& path) {
     const char version = two ? '2' : '1';
     const bool known = magic[0] == 'n' && magic[2] == version && (magic[1] == '+' || magic[1] == 'i');
     if (two && !known) refuse_start("NIfTI", path);
-    if (!in) refuse("a NIfTI header that is cut off", path, "get the file again");
+    if (!in) refuse("a truncated NIfTI header", path, "get the file again");
     if (known) {
         const Form form = magic[1] == '+' ? Form::one_file : Form::pair;
         return two ? header_2(raw.data(), swapped, form) : header_1(raw.data(), swapped, form);
@@ -203,9 +203,9 @@ Grid place_of(const Header& header, ivec3 dims, std::vector<std::string>& notes,
         all.push_back(by_spacing(dims, spacing_of(header, of_spacing, path)));
         notes.push_back(
             header.form == Form::analyze
-                ? "an Analyze file does not say how it lies: x is taken as left, y as forward, z "
+                ? "an Analyze file does not state its orientation: x is taken as left, y as forward, z "
                   "as up, and left and right may be swapped"
-                : "it does not say how it lies (qform and sform code 0): x is taken as left, y as "
+                : "it does not state its orientation (qform and sform code 0): x is taken as left, y as "
                   "forward, z as up");
     }
     const auto usable =
@@ -223,7 +223,7 @@ Grid place_of(const Header& header, ivec3 dims, std::vector<std::string>& notes,
         const double distance = apart(*all[0].grid, *all[1].grid);
         if (distance > 0.1 * std::min({voxel.x, voxel.y, voxel.z}))
             notes.push_back(fmt::format(
-                "it states two places, up to {:.3g} mm apart: the {} is taken, not the {}",
+                "it states two placements, up to {:.3g} mm apart: the {} is taken, not the {}",
                 distance * 1000 * (unit_of(header) > 0 ? unit_of(header) : 1e-3), all[0].name, all[1].name));
     }
     if (!usable->name.starts_with("sform")) notes.insert(notes.end(), of_spacing.begin(), of_spacing.end());
@@ -268,7 +268,7 @@ Layout layout_of(const Header& header, std::size_t voxels, std::vector<std::stri
     const auto number = nifti_number(header.datatype);
     if (!number) refuse_type(header.datatype, path);
     Layout layout{.number = *number, .big_endian = header.big_endian, .voxels = voxels};
-    if (!(header.offset >= 0 && header.offset < 1e15)) refuse("voxels that begin nowhere", path);
+    if (!(header.offset >= 0 && header.offset < 1e15)) refuse("voxels at an invalid offset", path);
     layout.skipped_bytes = std::int64_t(header.offset);
     // A slope of 0 means none.
     if (std::isfinite(header.slope) && header.slope != 0) {

@@ -125,7 +125,7 @@ dvec3 turn_of(const std::string& space, std::vector<std::string>& notes) {
     if (is("right-anterior-superior", "ras")) return {-1, -1, 1};
     if (is("left-anterior-superior", "las")) return {1, -1, 1};
     if (is("left-posterior-superior", "lps")) return dvec3(1);
-    notes.push_back("it does not say what is left, back and up: x, y and z are taken so");
+    notes.push_back("it does not state its orientation: x is taken as left, y as back, z as up");
     return dvec3(1);
 }
 
@@ -229,7 +229,7 @@ Layout layout_of(const Fields& fields, std::vector<std::string>& notes, const st
     layout.packing = packing_of(small_letters(fields["encoding"]), path);
     layout.big_endian = small_letters(fields["endian"]) == "big";
     if (!fields.has("endian") && bytes_of(layout.number) > 1 && layout.packing != Packing::text)
-        notes.push_back("it does not state the order of bytes: little-endian is assumed");
+        notes.push_back("it does not state its byte order: little-endian is assumed");
     layout.skipped_lines = skipped(fields, "lineskip", 0, path);
     layout.skipped_bytes = skipped(fields, "byteskip", -1, path);
     return layout;

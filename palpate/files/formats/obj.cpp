@@ -126,7 +126,7 @@ class Obj {
         const auto astray = std::ranges::count_if(numbers, [&](Index n) { return n >= count; });
         if (astray > 0)
             draft.notes.push_back(
-                fmt::format("left the {} out: {} corners name ones that are not there", what, astray));
+                fmt::format("left the {} out: {} corners refer to missing ones", what, astray));
         return astray == 0 && !numbers.empty();
     }
 
@@ -143,7 +143,7 @@ class Obj {
         if (any_normal_ && !all_normals_)
             draft.notes.push_back("left the normals out: some corners have none");
         if (cut_off_)
-            draft.notes.push_back("the last line may be cut off: a face of fewer corners, without an end");
+            draft.notes.push_back("the last line may be truncated: a face of fewer corners, without an end");
         draft.loose = loose_;
         if (free_forms_ > 0)
             draft.notes.push_back(fmt::format("left out {}", counted(free_forms_, "free-form shape")));

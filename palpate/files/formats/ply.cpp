@@ -98,7 +98,7 @@ class Ply {
             source_.broken(has("range_grid") ? "no faces, only a grid of ranges," : "no faces, only points,",
                            "make a surface of them first, as MeshLab can");
         for (std::string_view name : {"vertex", "x", "y", "z", "vertex_indices"})
-            if (!has(name)) source_.broken("no " + std::string(name) + " among what its header promises");
+            if (!has(name)) source_.broken("no " + std::string(name) + " in its header");
         for (std::string_view name : {"vertex", "x", "y", "z", "nx", "ny", "nz", "face", "tristrips"})
             if (found_.count(name) > 1)
                 source_.broken("more than one " + std::string(name) + " in its header");

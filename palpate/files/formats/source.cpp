@@ -87,7 +87,7 @@ void Source::misspelled(std::string_view word) const {
     std::replace(point.begin(), point.end(), ',', '.');
     if (point != word && spelled(point))
         broken("a decimal comma, " + in_quotes(word) + ",", "export it with decimal points");
-    broken_here(word.empty() ? "too few numbers" : in_quotes(word) + " for a number");
+    broken_here(word.empty() ? "too few numbers" : in_quotes(word) + " instead of a number");
 }
 
 double Source::number(std::string_view word) const {

@@ -60,7 +60,7 @@ Draft read_binary(const Source& source) {
     const bool uncounted = promised(bytes) == 0 && there > 0 && bytes.size() == head_bytes + facet * there;
     const std::size_t count = uncounted ? there : promised(bytes);
     if (count > there && is_plain_text(bytes.substr(0, 1000)))
-        source.broken("a text that is no STL", "give it the ending of its format");
+        source.broken("a text that is not STL", "give it the extension of its format");
     if (count > there) source.broken(fmt::format("{} facets promised and {} there", count, there));
     if (count > std::numeric_limits<Index>::max() / 3) source.broken("too many facets");
     Draft draft;
@@ -97,7 +97,7 @@ class StlText {
         if (in_solid_)
             draft_.notes.push_back("the text ends without \"endsolid\": facets may be missing from the file");
         if (!others_.empty())
-            draft_.notes.push_back(fmt::format("read over {} outside of any shape, the first with {}",
+            draft_.notes.push_back(fmt::format("ignored {} outside of any facet, the first with {}",
                                                counted(others_.size(), "line"), in_quotes(others_.front())));
         return std::move(draft_);
     }

@@ -15,11 +15,11 @@ constexpr Stranger strangers[] = {
     {"<!doctype html", "a web page, not the file itself,", "download the file itself"},
     {"<html", "a web page, not the file itself,", "download the file itself"},
     {"ISO-10303-21", "a STEP file, which has no triangles,", "export it as .stl"},
-    {"BZh", "a file packed by bzip2", "unpack it first"},
+    {"BZh", "a file compressed by bzip2", "unpack it first"},
     {"\xfd"
      "7zXZ",
-     "a file packed by xz", "unpack it first"},
-    {"\x28\xb5\x2f\xfd", "a file packed by zstd", "unpack it first"},
+     "a file compressed by xz", "unpack it first"},
+    {"\x28\xb5\x2f\xfd", "a file compressed by zstd", "unpack it first"},
     {"7z\xbc\xaf\x27\x1c", "a 7z archive", "unpack it first"},
     {"Rar!\x1a\x07", "a RAR archive", "unpack it first"}};
 

@@ -62,7 +62,7 @@ class Archive {
             text.append(block, 0, std::size_t(count));
             if (text.size() > most) source_.broken("more in the archive than its size warrants");
         }
-        source_.broken("a damaged or locked " + in_quotes(plain) + " in the archive", "get the file again");
+        source_.broken("a damaged or encrypted " + in_quotes(plain) + " in the archive", "get the file again");
     }
 
     bool has(std::string_view name) const {
@@ -232,7 +232,7 @@ class ThreeMf {
             const std::string_view extension = model["xmlns:" + std::string(prefix)];
             const auto begins = [&](std::string_view start) { return extension.starts_with(start); };
             if (std::ranges::none_of(understood_namespaces, begins))
-                source_.broken("a 3MF that cannot be understood without the extension " +
+                source_.broken("a 3MF that requires the extension " +
                                    in_quotes(extension.empty() ? prefix : extension, 200) +
                                    ", which is not read,",
                                "export it without that, or as .stl");
@@ -253,11 +253,11 @@ class ThreeMf {
     }
 
     void add(const Name& name, const Place& place, int depth) {
-        if (depth > most_components_deep) source_.broken("objects that are put together of themselves");
+        if (depth > most_components_deep) source_.broken("an object that contains itself");
         budget_.spend(bytes_an_object);
         const auto found = objects_.find(name);
         if (found == objects_.end())
-            source_.broken(fmt::format("an object {} that is nowhere", in_quotes(name.second)));
+            source_.broken(fmt::format("an object {} that is missing", in_quotes(name.second)));
         const Object& object = found->second;
         if (object.is_support) {
             ++supports_;

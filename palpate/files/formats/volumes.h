@@ -53,7 +53,7 @@ double named_unit(const std::string& name, std::vector<std::string>& notes);
 
 /// The note on a file that states no spacing, where 1 is taken.
 constexpr const char* no_spacing =
-    "it states no spacing: 1 mm is assumed, or 1 of the unit that is said for the file";
+    "it states no spacing: 1 mm is assumed, or 1 of the unit given for the file";
 
 /// The contents of a file, unconverted.
 struct Reading {

@@ -42,14 +42,14 @@ std::unique_ptr<Filtered> unpacked(std::istream& in, Packing packing, const std:
     auto out = std::make_unique<Filtered>();
     const int first = in.peek();
     if (packing == Packing::bzip2) {
-        if (first != 'B') refuse("voxels that are said to be a bzip2 and are none", file);
+        if (first != 'B') refuse("voxels that are not bzip2, as the header says,", file);
         out->push(io::bzip2_decompressor());
     } else if (first == 0x1f) {
         out->push(io::gzip_decompressor());
     } else if ((first & 0x0f) == 8) {
         out->push(io::zlib_decompressor());
     } else {
-        refuse("voxels that are said to be a gzip and are none", file);
+        refuse("voxels that are not gzip, as the header says,", file);
     }
     out->push(in);
     out->exceptions(std::ios::badbit);
@@ -92,7 +92,7 @@ std::size_t read_hex(std::istream& in, char* to, std::size_t most, const std::fi
         if (std::isspace(static_cast<unsigned char>(c))) continue;
         const char* all = "0123456789abcdef";
         const char* found = std::strchr(all, std::tolower(static_cast<unsigned char>(c)));
-        if (!found || c == '\0') refuse("a letter that is no hexadecimal digit", file);
+        if (!found || c == '\0') refuse("a character that is not a hexadecimal digit", file);
         const auto value = char(found - all);
         to[digits / 2] = digits % 2 == 0 ? char(value << 4) : char(to[digits / 2] | value);
         ++digits;
@@ -104,7 +104,7 @@ std::size_t read_hex(std::istream& in, char* to, std::size_t most, const std::fi
 
 std::unique_ptr<std::istream> open_packed(const std::filesystem::path& path) {
     if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
-        refuse("no ordinary file", path, "name a file");
+        refuse("not a regular file", path, "name a file");
     auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
     if (!*file) refuse("cannot open", path, "check the name and that it may be read");
     return file;
@@ -134,7 +134,7 @@ void refuse_start(std::string_view format, const std::filesystem::path& path) {
                                         {"7z\xbc\xaf", "7z"},
                                         {"\x28\xb5\x2f\xfd", "zstd"}})
         if (start.starts_with(mark)) refuse(fmt::format("an archive ({})", packing), path, "unpack it first");
-    refuse(fmt::format("no {} header", format), path, "give a file that is what its name says");
+    refuse(fmt::format("no {} header", format), path, "give a file of the format that its name says");
 }
 
 std::size_t bytes_of(Number kind) {
@@ -191,7 +191,7 @@ void Voxels::take_text(std::istream& in, const std::filesystem::path& file) {
         if (!(in >> std::setw(64) >> word))
             refuse_truncated(double(there), double(promised), "numbers", file);
         const auto number = spelled(word);
-        if (!number) refuse(in_quotes(word) + " for a number", file);
+        if (!number) refuse(in_quotes(word) + " instead of a number", file);
         make_room(1);
         if (seen_++ / layout_.run % layout_.every == 0)
             values_.push_back(float(*number * layout_.slope + layout_.intercept));

@@ -127,7 +127,7 @@ class Vrml {
     void tell_of_textures() {
         if (astray_ > 0)
             draft_.notes.push_back(fmt::format(
-                "left the texture coordinates out: {} corners name ones that are not there", astray_));
+                "left the texture coordinates out: {} corners refer to missing ones", astray_));
         const auto missing = [](dvec2 uv) { return std::isnan(uv.x); };
         const auto without = std::ranges::count_if(draft_.uvs, missing);
         if (astray_ == 0 && without > 0 && without < std::ssize(draft_.uvs))
@@ -256,7 +256,7 @@ class Vrml {
     // ROUTE node.event TO node.event says nothing of a surface; a PROTO could say anything.
     bool skip_statement(std::string_view word) {
         if (word == "PROTO" || word == "EXTERNPROTO")
-            source_.broken("a PROTO, a node of its own making,", "convert it with another program");
+            source_.broken("a PROTO, a user-defined node,", "convert it with another program");
         if (word == "UNIT") {
             next();
             read_unit();
@@ -278,7 +278,7 @@ class Vrml {
         const std::string_view category = next();
         next();
         const double factor = source_.number(next());
-        if (!(factor > 0) || std::isinf(factor)) source_.broken_here("a unit of no size");
+        if (!(factor > 0) || std::isinf(factor)) source_.broken_here("a unit that is not above zero");
         if (category == "length") draft_.unit = factor;
         if (category == "angle") angle_ = factor;
     }

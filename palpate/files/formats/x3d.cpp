@@ -36,7 +36,7 @@ class X3d {
     std::string put_over() {
         read_xml(
             source_, [&](const XmlElement& element) { return begin(element); }, [&](auto) { end(); });
-        if (!is_x3d_) source_.broken("XML that is no X3D");
+        if (!is_x3d_) source_.broken("XML that is not X3D");
         return std::move(text_);
     }
 
@@ -52,7 +52,7 @@ class X3d {
                 "UNIT " + plain(element["category"]) + " unit " + plain(element["conversionFactor"]) + ' ';
         } else if (element.name == "ProtoDeclare" || element.name == "ExternProtoDeclare" ||
                    element.name == "ProtoInstance") {
-            source_.broken("a PROTO, a node of its own making,", "convert it with another program");
+            source_.broken("a PROTO, a user-defined node,", "convert it with another program");
         } else if (element.name == "Script" || element.name == "ROUTE") {
             skipped_ = 1;
         } else if (element.name != "X3D" && element.name != "Scene" && !element.name.empty() &&
