@@ -141,9 +141,9 @@ void fill_outside(Reading& reading, const std::filesystem::path& path) {
     if (without == reading.values.size()) refuse("no voxel with a finite value", path, "give another file");
     for (float& value : reading.values)
         if (!std::isfinite(value)) value = lowest;
-    reading.notes.push_back(fmt::format(
-        "{} voxels ({:.2g} %) have no value (NaN, infinite, or marked as outside): they get {}",
-        without, 100.0 * double(without) / double(reading.values.size()), lowest));
+    reading.notes.push_back(
+        fmt::format("{} voxels ({:.2g} %) have no value (NaN, infinite, or marked as outside): they get {}",
+                    without, 100.0 * double(without) / double(reading.values.size()), lowest));
 }
 
 std::string name_of_unit(double unit) {
@@ -153,15 +153,15 @@ std::string name_of_unit(double unit) {
     return fmt::format("units of {} m", unit);
 }
 
-double unit_for(const std::optional<Units>& said, Reading& reading) {
+double unit_for(const std::optional<Units>& given, Reading& reading) {
     const double stated = reading.unit;
-    if (!said) return stated > 0 ? stated : 1e-3;
-    const double unit = double(metres(*said));
+    if (!given) return stated > 0 ? stated : 1e-3;
+    const double unit = double(metres(*given));
     if (stated > 0 && std::abs(unit / stated - 1) > 1e-6)
         reading.notes.push_back(
             fmt::format("its lengths are in {}, as it says, but are taken in {}, as was "
                         "asked for",
-                        name_of_unit(stated), name_of(*said)));
+                        name_of_unit(stated), name_of(*given)));
     return unit;
 }
 

@@ -66,7 +66,7 @@ class Numbered : public Sequence {
 
 // ---- one file ----
 
-// A file whose header is known only at the end: its body waits on disk until then.
+// A file whose header is known only at the end: until then its body is in a temporary file.
 class Headless {
  public:
     explicit Headless(const std::filesystem::path& path)
@@ -109,7 +109,7 @@ class Headless {
     std::unique_ptr<std::FILE, Close> stream_;
 };
 
-// ---- caches of positions, and the mesh beside them ----
+// ---- caches of positions, with the mesh in a file of its own ----
 
 std::uint32_t big_endian(float number) { return __builtin_bswap32(std::bit_cast<std::uint32_t>(number)); }
 std::uint32_t big_endian(std::size_t number) { return __builtin_bswap32(std::uint32_t(number)); }
@@ -202,10 +202,9 @@ class Morphs : public Sequence {
  private:
     void check_room_for(std::size_t pictures) const {
         if (contents_.bytes(pictures) > gltf_limit)
-            throw Error(fmt::format("{} pictures of {} vertices, which exceed 2 GB", pictures,
-                                    contents_.vertices),
-                        path_.string(),
-                        "write fewer pictures, simplify the surface, or use .vtp, .pc2 or .mdd");
+            throw Error(
+                fmt::format("{} pictures of {} vertices, which exceed 2 GB", pictures, contents_.vertices),
+                path_.string(), "write fewer pictures, simplify the surface, or use .vtp, .pc2 or .mdd");
     }
 
     std::filesystem::path path_;

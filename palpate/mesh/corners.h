@@ -118,12 +118,12 @@ inline void drop_attributes(Mesh& mesh) {
 /// Keeps the first `count` positions, and renumbers the faces' vertices by `place`, the new number of each
 /// old vertex. Returns how many vertices were removed.
 inline std::size_t renumber(Mesh& mesh, const std::vector<Index>& place, Index count) {
-    const std::size_t went = mesh.positions.size() - count;
-    if (went == 0) return 0;
+    const std::size_t removed = mesh.positions.size() - count;
+    if (removed == 0) return 0;
     mesh.positions.resize(count);
     drop_attributes(mesh);
     for (uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
-    return went;
+    return removed;
 }
 
 }  // namespace palpate

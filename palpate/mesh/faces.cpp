@@ -208,18 +208,18 @@ std::size_t drop_flaps(Mesh& mesh) {
 
 std::size_t drop_flat_faces(Mesh& mesh) {
     constexpr int most_passes = 8;  // each mends at least every other one in a row of them
-    std::size_t went = 0, flat = count_flat(mesh);
+    std::size_t removed = 0, flat = count_flat(mesh);
     for (int pass = 0; pass < most_passes && flat > 0; ++pass) {
         Mesh mended{mesh.positions, {}, mesh.triangles};
         FlatFaces(mended).mend();
         drop_collapsed(mended);
         const std::size_t left = count_flat(mended);
         if (left >= flat) break;
-        went += flat - left;
+        removed += flat - left;
         flat = left;
         mesh = std::move(mended);
     }
-    return went;
+    return removed;
 }
 
 }  // namespace palpate

@@ -67,18 +67,18 @@ void turn_over(Mesh& mesh, const Parts& part, const std::vector<char>& turn) {
         if (turn[part.of[face]]) std::swap(mesh.triangles[face].y, mesh.triangles[face].z);
 }
 
-std::vector<char> wrong_way_out(Mesh& mesh, const Parts& part, Arrangement& lie) {
+std::vector<char> wrong_way_out(Mesh& mesh, const Parts& part, Arrangement& arrangement) {
     const std::vector<char> is_inward = inward(mesh, part);
     if (part.count < 2 || std::count(is_inward.begin(), is_inward.end(), true) == 0) return is_inward;
-    if (!lie.around_outward) {
+    if (!arrangement.around_outward) {
         turn_over(mesh, part, is_inward);
-        lie.around_outward = surroundings(mesh, part, lie.tree());
+        arrangement.around_outward = surroundings(mesh, part, arrangement.tree());
         turn_over(mesh, part, is_inward);
     }
     std::vector<char> turn(part.count);
     bool all = true;
     for (Index i = 0; i < part.count; ++i) {
-        if ((*lie.around_outward)[i].value_or(0) > 0) continue;
+        if ((*arrangement.around_outward)[i].value_or(0) > 0) continue;
         turn[i] = is_inward[i];
         all &= bool(turn[i]);
     }
@@ -86,9 +86,9 @@ std::vector<char> wrong_way_out(Mesh& mesh, const Parts& part, Arrangement& lie)
     return turn;
 }
 
-std::size_t turn_parts(Mesh& mesh, Arrangement& lie) {
+std::size_t turn_parts(Mesh& mesh, Arrangement& arrangement) {
     const Parts part = parts(mesh);
-    const std::vector<char> turn = wrong_way_out(mesh, part, lie);
+    const std::vector<char> turn = wrong_way_out(mesh, part, arrangement);
     const auto turned = std::size_t(std::count(turn.begin(), turn.end(), true));
     turn_over(mesh, part, turn);
     if (turned > 0) drop_attributes(mesh);
@@ -96,35 +96,35 @@ std::size_t turn_parts(Mesh& mesh, Arrangement& lie) {
 }
 
 std::size_t turn_parts(Mesh& mesh) {
-    Arrangement lie(mesh);
-    return turn_parts(mesh, lie);
+    Arrangement arrangement(mesh);
+    return turn_parts(mesh, arrangement);
 }
 
-Nested drop_nested(Mesh& mesh, Arrangement& lie) {
+Nested drop_nested(Mesh& mesh, Arrangement& arrangement) {
     Nested found;
     const Parts part = parts(mesh);
     if (part.count < 2) return found;
-    const std::vector<char> keep = part_inside_from_outside(mesh, part, lie.tree(), found.crossing);
+    const std::vector<char> keep = part_inside_from_outside(mesh, part, arrangement.tree(), found.crossing);
     found.dropped = keep_parts(mesh, part, keep).parts;
-    if (found.dropped > 0) lie.forget();
+    if (found.dropped > 0) arrangement.forget();
     return found;
 }
 
 Nested drop_nested(Mesh& mesh) {
-    Arrangement lie(mesh);
-    return drop_nested(mesh, lie);
+    Arrangement arrangement(mesh);
+    return drop_nested(mesh, arrangement);
 }
 
 Nesting nesting(const Mesh& mesh) {
     Nesting found;
     const Parts part = parts(mesh);
     Mesh turned{mesh.positions, {}, mesh.triangles};
-    Arrangement lie(turned);
-    const std::vector<char> turn = wrong_way_out(turned, part, lie);
+    Arrangement arrangement(turned);
+    const std::vector<char> turn = wrong_way_out(turned, part, arrangement);
     found.inside_out = std::size_t(std::count(turn.begin(), turn.end(), true));
     if (part.count < 2) return found;
     turn_over(turned, part, turn);
-    const std::vector<char> keep = part_inside_from_outside(turned, part, lie.tree(), found.crossing),
+    const std::vector<char> keep = part_inside_from_outside(turned, part, arrangement.tree(), found.crossing),
                             is_inward = inward(turned, part);
     for (Index i = 0; i < part.count; ++i) {
         found.redundant += !keep[i];

@@ -10,7 +10,7 @@ Remade remake(const Mesh&, float, const std::string& name, const Progress&) {
 }
 
 std::size_t decimate(Mesh&, std::size_t) {
-    throw missing_part("voxels", "simplifying a mesh", "simplify it in the program that made it");
+    throw missing_part("voxels", "decimating a mesh", "simplify it in the program that made it");
 }
 
 }  // namespace palpate

@@ -28,8 +28,8 @@ std::vector<double> volumes(const Mesh& mesh, const Parts& parts);
 std::vector<float> sides(const Mesh& mesh, const Parts& parts);
 
 /// Which parts turn_parts() would flip: those outside of all others, if they are inside out; and all parts,
-/// if all of those are. The mesh, to which `lie` must belong, is changed only temporarily.
-std::vector<char> wrong_way_out(Mesh& mesh, const Parts& parts, Arrangement& lie);
+/// if all of those are. The mesh, to which `arrangement` must belong, is changed only temporarily.
+std::vector<char> wrong_way_out(Mesh& mesh, const Parts& parts, Arrangement& arrangement);
 
 /// Flips the faces of those parts for which `turn` is true; a second call undoes it.
 void turn_over(Mesh& mesh, const Parts& parts, const std::vector<char>& turn);

@@ -245,16 +245,16 @@ Pieces pieces(const Tree& tree, const Parts& part) {
 }
 
 Dropped keep_largest(Mesh& mesh) {
-    Arrangement lie(mesh);
-    return keep_largest(mesh, lie);
+    Arrangement arrangement(mesh);
+    return keep_largest(mesh, arrangement);
 }
 
-Dropped keep_largest(Mesh& mesh, Arrangement& lie) {
+Dropped keep_largest(Mesh& mesh, Arrangement& arrangement) {
     const Parts part = parts(mesh);
     if (part.count < 2) return {};
-    const std::vector<char> turn = wrong_way_out(mesh, part, lie);
+    const std::vector<char> turn = wrong_way_out(mesh, part, arrangement);
     turn_over(mesh, part, turn);
-    const Pieces found = pieces(lie.tree(), part);
+    const Pieces found = pieces(arrangement.tree(), part);
     turn_over(mesh, part, turn);
     if (!found.all) return {.crowded = mesh.triangles.size()};
     if (found.volume.size() < 2) return {};
@@ -263,7 +263,7 @@ Dropped keep_largest(Mesh& mesh, Arrangement& lie) {
     std::vector<char> keep;
     for (Index piece : found.of) keep.push_back(piece == largest);
     Dropped dropped = keep_parts(mesh, part, keep);
-    lie.forget();
+    arrangement.forget();
     dropped.volume = 0;
     for (Index piece = 0; piece < found.volume.size(); ++piece)
         if (piece != largest) dropped.volume += found.volume[piece];

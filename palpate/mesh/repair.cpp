@@ -26,11 +26,11 @@ struct Steps {
         at->count += count;
         return *at;
     }
-    void add(const std::string& what, const Dropped& went) {
-        if (went.parts > 0) add(what, went.parts).volume += went.volume;
-        if (went.crowded > 0)
-            add("faces too crowded to be searched for parts that touch", 0).count = went.crowded;
-        dropped += went.volume;
+    void add(const std::string& what, const Dropped& removed) {
+        if (removed.parts > 0) add(what, removed.parts).volume += removed.volume;
+        if (removed.crowded > 0)
+            add("faces too crowded to be searched for parts that touch", 0).count = removed.crowded;
+        dropped += removed.volume;
     }
     // For a share of the surface's area.
     void add(const std::string& what, std::size_t count, double share) {
@@ -51,9 +51,9 @@ struct Steps {
 
 // Scales a very large or very small mesh to about one metre, and back: by a power of two, which is exact. So
 // lengths may be squared in between.
-class Handy {
+class UnitScale {
  public:
-    explicit Handy(Mesh& mesh) : mesh_(mesh) {
+    explicit UnitScale(Mesh& mesh) : mesh_(mesh) {
         float farthest = 0;
         for (vec3 p : mesh.positions)
             farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -62,9 +62,9 @@ class Handy {
         power_ = power;
         scale(-power_);
     }
-    ~Handy() { scale(power_); }
-    Handy(const Handy&) = delete;
-    Handy& operator=(const Handy&) = delete;
+    ~UnitScale() { scale(power_); }
+    UnitScale(const UnitScale&) = delete;
+    UnitScale& operator=(const UnitScale&) = delete;
 
     float length(float metres) const { return std::ldexp(metres, -power_); }
     double unit() const { return std::ldexp(1.0, power_); }  // m
@@ -139,11 +139,11 @@ void clean(Mesh& mesh, const RepairSettings& settings, float tolerance, Steps& s
     steps.add("collapsed or double faces dropped", collapsed);
     drop_backs(mesh, steps);
     const double area = area_from(mesh, 0);
-    auto dropped = [&](const std::string& what, const Dropped& went) {
+    auto dropped = [&](const std::string& what, const Dropped& removed) {
         if (settings.sheet)
-            steps.add(what, went.parts, went.area / area);
+            steps.add(what, removed.parts, removed.area / area);
         else
-            steps.add(what, went);
+            steps.add(what, removed);
     };
     dropped("specks dropped", drop_specks(mesh, settings.specks));
     steps.add("faces without an area removed", drop_flat_faces(mesh));
@@ -171,8 +171,8 @@ void drop_sheets(Mesh& mesh, std::size_t closing, Steps& steps) {
         keep.push_back(roundness > (lid[i] > 0.25 * area[i] ? 1e-3 : 1e-6));
     }
     const double all = area_from(mesh, 0);
-    const Dropped went = keep_parts(mesh, part, keep);
-    steps.add("sheets dropped that enclose nothing", went.parts, went.area / all);
+    const Dropped removed = keep_parts(mesh, part, keep);
+    steps.add("sheets dropped that enclose nothing", removed.parts, removed.area / all);
 }
 
 Error no_inside(const RepairSettings& settings) {
@@ -190,21 +190,22 @@ bool is_one_sided_sheet(const Mesh& mesh, std::size_t one_sided) {
 
 // Keeps those closed parts that separate inside from outside and are large enough. Returns how many lie
 // partly inside others.
-std::size_t settle(Mesh& mesh, Arrangement& lie, const RepairSettings& settings, Steps& steps) {
+std::size_t keep_sound_parts(Mesh& mesh, Arrangement& arrangement, const RepairSettings& settings,
+                             Steps& steps) {
     steps.add("faces without an area removed", drop_flat_faces(mesh));
     drop_sheets(mesh, mesh.triangles.size(), steps);
     steps.add("specks dropped", drop_specks(mesh, settings.specks));
-    lie.forget();
-    if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh, lie));
-    steps.add("parts turned outward", turn_parts(mesh, lie));
-    const Nested nested = drop_nested(mesh, lie);
+    arrangement.forget();
+    if (settings.largest) steps.add("smaller parts dropped", keep_largest(mesh, arrangement));
+    steps.add("parts turned outward", turn_parts(mesh, arrangement));
+    const Nested nested = drop_nested(mesh, arrangement);
     steps.add("parts dropped that lay inside another", nested.dropped);
     drop_unused(mesh);
     return nested.dropped == 0 ? nested.crossing : nesting(mesh).crossing;
 }
 
-// Makes a solid of the mesh's own faces. Returns why that failed; empty if it did not.
-std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& settings, Steps& steps) {
+// Makes a solid of the mesh's own faces. Returns why that failed; empty if it succeeded.
+std::string repair_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& settings, Steps& steps) {
     if (one_sided > 0)
         return fmt::format("{} part{} one side only", one_sided, one_sided == 1 ? " has" : "s have");
     const std::size_t closing = mesh.triangles.size();
@@ -213,9 +214,9 @@ std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& 
     drop_sheets(mesh, closing, steps);
     steps.add("faces dropped that lay back to back", drop_flaps(mesh));
     steps.add("vertices added to separate touching sheets", separate_sheets(mesh));
-    Arrangement lie(mesh);
-    std::size_t crossing = settle(mesh, lie, settings, steps);
-    const Intersections cuts = intersections(lie.tree());
+    Arrangement arrangement(mesh);
+    std::size_t crossing = keep_sound_parts(mesh, arrangement, settings, steps);
+    const Intersections cuts = intersections(arrangement.tree());
     if (!cuts.all) steps.add("faces too crowded to be searched for cuts", mesh.triangles.size());
     if (!cuts.faces.empty()) {
         const double before = volume(mesh);
@@ -225,7 +226,7 @@ std::string mend_walls(Mesh& mesh, std::size_t one_sided, const RepairSettings& 
                                cuts.faces.size());
         steps.add("faces replaced that cut through each other", mended).volume +=
             std::abs(volume(mesh) - before);
-        crossing = settle(mesh, lie, settings, steps);
+        crossing = keep_sound_parts(mesh, arrangement, settings, steps);
     }
     if (crossing > 0) return fmt::format("{} parts lie partly inside others", crossing);
     if (!is_closed(mesh)) return "some of its holes cannot be closed";
@@ -261,11 +262,11 @@ void make_by_voxels(Mesh& mesh, const RepairSettings& settings, float voxel, con
     steps.add("fragments dropped that voxels left", made.bits);
     steps.add("faces lost where walls are thinner than a voxel", made.thin_faces, made.thin);
     Steps own;  // of the voxel remesh; only what these drop is reported
-    Arrangement lie(solid);
-    settle(solid, lie, settings, own);
+    Arrangement arrangement(solid);
+    keep_sound_parts(solid, arrangement, settings, own);
     const double before = volume(solid);
     simplify(solid, mesh.triangles.size());
-    settle(solid, lie, settings, own);
+    keep_sound_parts(solid, arrangement, settings, own);
     for (const Repair& step : own.done)
         if (step.what == "specks dropped" || step.what == "smaller parts dropped")
             steps.add(step.what, Dropped{step.count, step.volume});
@@ -293,16 +294,16 @@ std::string in_words(const Repair& step) {
 
 std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Progress& progress) {
     check_finite(mesh, settings.name);
-    const Handy handy(mesh);
+    const UnitScale unit_scale(mesh);
     auto tell = [&](std::string_view doing, double done) {
         if (progress) progress(doing, done);
     };
     Steps steps;
     tell("cleaning the mesh", 0);
-    clean(mesh, settings, handy.length(settings.weld), steps);
+    clean(mesh, settings, unit_scale.length(settings.weld), steps);
     if (settings.sheet) {
         if (mesh.triangles.empty()) throw Error("no face with an area", settings.name, "look at the file");
-        return std::move(steps).of(0, handy.unit());
+        return std::move(steps).of(0, unit_scale.unit());
     }
     const std::size_t one_sided = one_sided_parts(mesh);
     if (is_one_sided_sheet(mesh, one_sided)) throw no_inside(settings);
@@ -311,15 +312,15 @@ std::vector<Repair> repair(Mesh& mesh, const RepairSettings& settings, const Pro
         tell("repairing the walls", 0.2);
         Mesh walls = mesh;
         Steps more = steps;
-        why = mend_walls(walls, one_sided, settings, more);
+        why = repair_walls(walls, one_sided, settings, more);
         if (why.empty()) {
             mesh = std::move(walls);
-            return std::move(more).of(volume(mesh), handy.unit());
+            return std::move(more).of(volume(mesh), unit_scale.unit());
         }
     }
     tell("remeshing by voxels", 0.5);
-    make_by_voxels(mesh, settings, handy.length(settings.voxel), why, progress, steps);
-    return std::move(steps).of(volume(mesh), handy.unit());
+    make_by_voxels(mesh, settings, unit_scale.length(settings.voxel), why, progress, steps);
+    return std::move(steps).of(volume(mesh), unit_scale.unit());
 }
 
 }  // namespace palpate

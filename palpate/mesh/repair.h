@@ -12,7 +12,7 @@ namespace palpate {
 
 // ---- all of it ----
 
-/// How a surface becomes a solid: its own faces are mended, and only if that fails it is remeshed by voxels
+/// How a surface becomes a solid: its own faces are repaired, and only if that fails it is remeshed by voxels
 /// (walls); or it is remeshed by voxels at once (voxels).
 enum class SolidBy { walls, voxels };
 
@@ -47,9 +47,9 @@ std::string in_words(const Repair& step);
 
 /// Makes a sound solid of any triangles: finite, closed and consistently oriented (every edge has two faces
 /// that run along it in opposite directions), with a volume above zero. Returns what changed, in order; a
-/// sound mesh stays the same, to the bit. If the walls could not be mended, the step "faces made by voxels,
+/// sound mesh stays the same, to the bit. If the walls could not be repaired, the step "faces made by voxels,
 /// because …" says why. Two steps change nothing: "faces too crowded to be searched for cuts" and "… for
-/// parts that touch" tell that so many long thin faces lie together that not all pairs could be tested. If
+/// parts that touch" mean that so many long thin faces lie together that not all pairs could be tested. If
 /// the mesh is already closed, vertices that share a place are not welded, since they separate what would
 /// otherwise touch. Drops normals, texture coordinates and tangents of a mesh that it changes. Throws Error
 /// if a position is not finite or nothing encloses a volume: a sheet, a line, a point, a Möbius band. Lengths
@@ -109,7 +109,7 @@ std::size_t drop_unused(Mesh& mesh);
 /// cavities (mesh/pieces.h). Parts may be open or inside out. Keeps everything if faces are too crowded to be
 /// searched for parts that touch.
 Dropped keep_largest(Mesh& mesh);
-Dropped keep_largest(Mesh& mesh, Arrangement& lie);
+Dropped keep_largest(Mesh& mesh, Arrangement& arrangement);
 
 /// The same for open surfaces: keeps the connected part with the largest area.
 Dropped keep_largest_sheet(Mesh& mesh);
@@ -130,12 +130,12 @@ std::size_t turn_faces(Mesh& mesh);
 /// Flips each part whose volume is negative, except cavities: parts inside another that face the other way.
 /// Returns how many parts were flipped.
 std::size_t turn_parts(Mesh& mesh);
-std::size_t turn_parts(Mesh& mesh, Arrangement& lie);
+std::size_t turn_parts(Mesh& mesh, Arrangement& arrangement);
 
 /// Drops redundant parts inside another that are not cavities of it, so that all remaining walls separate
 /// inside from outside. The volume is unchanged. Call turn_parts() first.
 Nested drop_nested(Mesh& mesh);
-Nested drop_nested(Mesh& mesh, Arrangement& lie);
+Nested drop_nested(Mesh& mesh, Arrangement& arrangement);
 
 /// Closes each loop of open edges with new faces between its vertices; returns how many loops. If the
 /// orientation was consistent, all edges then have as many faces in one direction as in the other.

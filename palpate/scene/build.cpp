@@ -149,12 +149,12 @@ void add_notes(const BodyRecipe& recipe, const Model& model, Enclosed filled,
         notes.push_back(fmt::format("body {}: {}", recipe.name, what));
     };
     const Body& body = model.body;
-    if (recipe.dims || recipe.cloth)  // of a file's surface it is said already
+    if (recipe.dims || recipe.cloth)  // a file's surface has this note already
         if (const std::string warning = size_warning({body.positions, {}, {}}); !warning.empty())
             note(warning);
     if (model.surface.triangles.empty()) {
         note(recipe.cloth ? "one node wide, so it has no surface to draw"
-                          : "one node thick, so it has no surface to draw or to hang on it");
+                          : "one node thick, so it has no surface to draw or to embed");
         return;
     }
     if (recipe.dims || recipe.cage || recipe.is_cloth()) return;
@@ -177,7 +177,7 @@ void add_notes(const BodyRecipe& recipe, const Model& model, Enclosed filled,
     else
         note(
             fmt::format("the cells hold {:.2f} times the surface's volume: parts are thinner than a cell; "
-                        "{} follows them better",
+                        "{} resolves them better",
                         cells, recipe.spacing > 0 ? "a smaller spacing" : "a lattice of more nodes"));
 }
 
@@ -273,7 +273,7 @@ BodyRecipe without_looks(BodyRecipe recipe) {
 }
 
 // The recipe without its material, pins and mapping.
-BodyRecipe without_stuff(BodyRecipe recipe) {
+BodyRecipe without_material(BodyRecipe recipe) {
     const BodyRecipe plain;
     recipe = without_looks(std::move(recipe));
     recipe.material = plain.material;
@@ -286,7 +286,7 @@ BodyRecipe without_stuff(BodyRecipe recipe) {
 // The recipe of its surface alone.
 BodyRecipe without_body(BodyRecipe recipe) {
     const BodyRecipe plain;
-    recipe = without_stuff(std::move(recipe));
+    recipe = without_material(std::move(recipe));
     recipe.nodes = plain.nodes;
     recipe.spacing = plain.spacing;
     recipe.springs = plain.springs;
@@ -352,7 +352,7 @@ std::optional<Model> restuffed(const BodyRecipe& recipe, const Scene& scene, con
                                std::vector<std::string>& notes) {
     if (recipe.dims || recipe.cage || recipe.is_cloth() || recipe.is_textured() || !earlier)
         return std::nullopt;
-    const auto number = earlier->find(recipe, without_stuff);
+    const auto number = earlier->find(recipe, without_material);
     if (!number) return std::nullopt;
     const BodyRecipe& before = earlier->scene.bodies[*number];
     Model model = earlier->made.models[*number];
@@ -407,7 +407,7 @@ StaticSurface build_static_surface(const BodyRecipe& wanted, const Scene& scene,
     return {recipe.name, std::move(made.mesh), std::move(made.steps)};
 }
 
-// ---- what moves ----
+// ---- prescribed motion ----
 
 MovedNodes find_moved(const MoveRecipe& recipe, std::size_t number, const Scene& scene,
                       const std::vector<Model>& models, std::vector<std::string>& notes) {
@@ -422,15 +422,15 @@ MovedNodes find_moved(const MoveRecipe& recipe, std::size_t number, const Scene&
     return moved;
 }
 
-// A path in millimetres leads far away from everything.
-void look_at_paths(const Scene& scene, Models& made) {
+// Finds paths that lead far away from everything, as those in millimetres do.
+void check_paths(const Scene& scene, Models& made) {
     Bounds all;
     for (const Model& model : made.models)
         for (vec3 p : model.body.positions) all.include(p);
     for (const StaticSurface& still : made.static_surfaces)
         for (vec3 p : still.surface.positions) all.include(p);
     const float size = glm::length(all.size());
-    auto look_at = [&](const std::string& whose, const Path& path, const Lines& lines, vec3 origin) {
+    auto check = [&](const std::string& whose, const Path& path, const Lines& lines, vec3 origin) {
         float farthest = 0;
         for (const Waypoint& point : path)
             farthest = std::max(farthest, glm::distance(point.position, origin));
@@ -442,13 +442,12 @@ void look_at_paths(const Scene& scene, Models& made) {
                         whose, line > 0 ? fmt::format(" (line {})", line) : "", farthest, farthest / size));
     };
     for (const ToolRecipe& tool : scene.tools)
-        look_at("tool " + tool.name, tool.path, tool.lines,
-                tool.from || tool.relative ? vec3(0) : all.centre());
+        check("tool " + tool.name, tool.path, tool.lines,
+              tool.from || tool.relative ? vec3(0) : all.centre());
     for (std::size_t i = 0; i < scene.moves.size(); ++i)
-        look_at(fmt::format("move {}", i + 1), scene.moves[i].path, scene.moves[i].lines, vec3(0));
+        check(fmt::format("move {}", i + 1), scene.moves[i].path, scene.moves[i].lines, vec3(0));
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-        look_at(fmt::format("collider {}", i + 1), scene.colliders[i].path, scene.colliders[i].lines,
-                vec3(0));
+        check(fmt::format("collider {}", i + 1), scene.colliders[i].path, scene.colliders[i].lines, vec3(0));
 }
 
 // ---- files ----
@@ -496,9 +495,9 @@ std::vector<std::filesystem::path> find_files(const Scene& scene) {
         files.push_back(found);
     };
     auto want_surface = [&](const std::string& whose, const BodyRecipe& recipe) {
-        std::vector<std::string> said_later;
+        std::vector<std::string> ignored;
         want(whose, recipe.lines, "volume", recipe.volume);
-        want(whose, recipe.lines, "surface", with_surface(recipe, scene.folder, said_later).surface);
+        want(whose, recipe.lines, "surface", with_surface(recipe, scene.folder, ignored).surface);
         want(whose, recipe.lines, "colour_map", recipe.colour_map);
         want(whose, recipe.lines, "normal_map", recipe.normal_map);
         for (const Region& region : recipe.regions) want(whose, region.lines, "labels", region.labels);
@@ -532,7 +531,7 @@ Mesh read_shape(const ColliderRecipe& recipe, const Scene& scene, const std::str
     return mesh;
 }
 
-// Degenerate triangles have no sides.
+// Without degenerate triangles, which have no normal.
 Polygon polygon_of(const Mesh& mesh, float thickness) {
     Polygon polygon{{}, thickness};
     for (uvec3 t : mesh.triangles) {
@@ -604,7 +603,7 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
                 const bool fits = field_points(bounds(mesh).size(), thin->spacing) <= most_field_points;
                 result.notes.push_back(fmt::format(
                     "{}: {:.0f} % of its walls are thinner than the {:.3g} m between the points of its "
-                    "field, down to {:.3g} m, so what meets them may go through; {}",
+                    "field, down to {:.3g} m, so nodes may pass through them; {}",
                     where, 100 * thin->share, field.spacing, thin->thinnest,
                     fits ? fmt::format("use spacing = {:.2g}", thin->spacing)
                          : "use a box, a polygon or thicker walls"));
@@ -638,7 +637,7 @@ Models build_all(const Scene& scene, const Earlier* earlier, const Progress& pro
                     "give them as recipes, in Scene::colliders");
     result.simulation = scene.simulation;
     for (const ColliderRecipe& recipe : scene.colliders) add_collider(recipe, scene, result);
-    look_at_paths(scene, result);
+    check_paths(scene, result);
     return result;
 }
 

@@ -53,7 +53,7 @@ std::vector<std::filesystem::path> find_files(const Scene& scene);
 Models build(const Scene& scene, const Progress& progress = {});
 
 /// The same for a scene that was changed after `made` was built from `before`: what the change does not
-/// affect is taken over, so a new stiffness does not require reading files and mending surfaces again.
+/// affect is taken over, so a new stiffness does not require reading files and repairing surfaces again.
 Models rebuild(const Scene& scene, const Scene& before, const Models& made, const Progress& progress = {});
 
 }  // namespace palpate

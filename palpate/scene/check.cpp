@@ -78,9 +78,10 @@ void check_springs(const BodyRecipe& body, const Require& require) {
         require("links", !require.has("links"), "links has no effect here", "remove it");
     } else {
         require.one_of({"youngs_modulus", "stiffness"},
-                       "give it one: brain has about 1e4 Pa, or say the N/m of each spring");
+                       "give it one: brain has about 1e4 Pa; or give the N/m of each spring");
     }
-    require("bending", body.sheet || !require.has("bending"), "bending of a body that is not a sheet of triangles",
+    require("bending", body.sheet || !require.has("bending"),
+            "bending of a body that is not a sheet of triangles",
             "give cloth flexion springs, or use sheet = true with a surface");
     if (body.springs)
         require("springs", body.springs->structural > 0, "springs without structural ones",
@@ -96,7 +97,7 @@ void check_grid(const BodyRecipe& body, const Require& require) {
                             "solid", "voxel", "largest"})
         require(one, !require.has(one), fmt::format("{} beside {}, where it has no effect", one, key),
                 "remove it");
-    require(key, body.spacing > 0, key + " without spacing", "say how far apart the nodes are, in m");
+    require(key, body.spacing > 0, key + " without spacing", "give the distance of the nodes, in m");
 }
 
 // Textures. A map needs texture coordinates, which only files and cloth have.
@@ -193,7 +194,7 @@ void check(ColliderRecipe& recipe, std::size_t number, const SceneSource& source
     require("about", !recipe.about || !recipe.path.empty(), "about without a path", "remove it");
 }
 
-// ---- what moves ----
+// ---- moves and tools ----
 
 std::string all_of(const std::set<std::string>& names) {
     std::string list;
@@ -222,11 +223,11 @@ void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const Sc
     require("along", (!tool.from && tool.shaft == 0) || glm::length(tool.along) > 0, "along is zero",
             "give it a direction");
     require("along", tool.from || tool.shaft > 0 || !require.has("along"), "along without from or shaft",
-            "say from where the tip comes");
+            "give the point from which the tip comes");
     require("body", tool.body.empty() || bodies.contains(tool.body), "no body \"" + tool.body + "\"",
             "name one of " + all_of(bodies));
     require("relative", !tool.relative || tool.near, "relative without near",
-            "say near which point it takes hold of a node");
+            "give the point near which it grasps a node");
     require("kind", tool.kind != ToolKind::drag || !bodies.empty(), "no body that could be dragged",
             "add a [[body]]");
 }
@@ -237,7 +238,7 @@ void check(const CameraRecipe& camera, const std::set<std::string>& names, const
         throw Error("camera.look_at names no body or surface: " + *at, where,
                     "name one of them, or give a point");
     if (const auto* at = std::get_if<vec3>(&camera.look_at); at && camera.eye == *at)
-        throw Error("camera.look_at is where its eye is", where, "look at another point");
+        throw Error("camera.look_at is the same point as camera.eye", where, "look at another point");
 }
 
 // ---- all of it ----

@@ -36,8 +36,8 @@ std::string quoted(const std::filesystem::path& file) {
     return text + '"';
 }
 
-// It is scaled to two decimetres, which suits the step and the hand, and stiff enough to bear its own weight
-// without folding (50 kPa: softer than rubber, stiffer than a liver).
+// It is scaled to 0.2 m, which suits the step and the hand, and stiff enough to bear its own weight without
+// folding (50 kPa: softer than rubber, stiffer than a liver).
 SceneText scene_around(const char* kind, const std::filesystem::path& file) {
     return {fmt::format(R"([[body]]
 name = "it"
@@ -64,12 +64,12 @@ SceneText find_scene(const std::string& file_or_name) {
     if (!std::filesystem::exists(file_or_name, error))
         throw Error("no such scene or file", file_or_name, remedy_for_unknown(file_or_name));
     const std::filesystem::path file = file_or_name;
-    const bool named_so = ending(file) == ".toml";
-    if (!named_so && is_volume(file)) return scene_around("volume", std::filesystem::absolute(file));
-    if (!named_so && is_mesh(file)) return scene_around("surface", std::filesystem::absolute(file));
+    const bool is_toml = ending(file) == ".toml";
+    if (!is_toml && is_volume(file)) return scene_around("volume", std::filesystem::absolute(file));
+    if (!is_toml && is_mesh(file)) return scene_around("surface", std::filesystem::absolute(file));
     if (std::filesystem::is_directory(file, error))
         throw Error("no DICOM series in the folder", file_or_name, "name a file, or another folder");
-    if (!named_so && file.has_extension())
+    if (!is_toml && file.has_extension())
         throw Error("an extension of neither a scene nor a mesh nor a volume", file_or_name,
                     "a scene ends in .toml; meshes and volumes are listed in docs/import.md");
     return {read_text(file_or_name), file_or_name, file.parent_path()};

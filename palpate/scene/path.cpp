@@ -36,7 +36,7 @@ std::vector<double> numbers(std::string row) {
 }  // namespace
 
 void check(const Path& path, const std::string& whose) {
-    if (path.empty()) throw Error("no waypoint", whose, "give it a path of one at least");
+    if (path.empty()) throw Error("no waypoint", whose, "give it a path with at least one");
     for (std::size_t i = 0; i < path.size(); ++i) {
         const vec3 p = path[i].position, r = path[i].rotation;
         if (!std::isfinite(path[i].time) || !std::isfinite(p.x + p.y + p.z + r.x + r.y + r.z))
@@ -126,7 +126,7 @@ Path read_path(const std::filesystem::path& file, Rows kind) {
     return make_path(rows, kind, [&](std::size_t row, const std::string& what, const std::string& remedy) {
         const bool commas = rows[row].size() > 4;  // some may be decimal commas
         throw Error(fmt::format("line {} {}", lines[row], what), file.string(),
-                    remedy + (commas ? ", with points in numbers, or with semicolons between them" : ""));
+                    remedy + (commas ? ", with decimal points, or with semicolons between numbers" : ""));
     });
 }
 

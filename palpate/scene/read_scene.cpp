@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-// ---- what a scene file may hold ----
+// ---- the keys of a scene file ----
 
 // Lengths of bodies; and coordinates, also of paths.
 const NumberRange length = between(1e-6, 1e4, "m");
@@ -256,7 +256,7 @@ void read_fields(Reader& read, ColliderRecipe& recipe, Scene& scene) {
         read.fail("a collider without a shape", "give it a plane, sphere, capsule, box, polygon or field");
 }
 
-// ---- what moves ----
+// ---- moves, tools and wind ----
 
 void read_fields(Reader& read, MoveRecipe& move, Scene& scene) {
     move.lines = read.lines();
@@ -285,8 +285,7 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     auto refuse = [&](std::initializer_list<const char*> keys, const std::string& remedy) {
         for (const char* key : keys)
             if (const toml::node* node = read.get(key))
-                read.fail(*node, fmt::format("\"{}\" is not a key of a {}", key, name_of(tool.kind)),
-                          remedy);
+                read.fail(*node, fmt::format("\"{}\" is not a key of a {}", key, name_of(tool.kind)), remedy);
     };
     if (tool.kind == ToolKind::drag)
         refuse({"from", "along", "shaft"}, "remove it");
@@ -298,7 +297,7 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
 
 const NumberRange air = zero_or_more("kg/m³", "1.2 is usual").usual(0.01, 2000);
 
-// Wind brings air with it.
+// Wind implies air.
 void read_wind(Reader& read, Scene& scene) {
     std::optional<vec3> velocity;
     read("velocity", velocity, any_number("m/s", "a storm has 25 m/s").usual(0, 100));
@@ -401,7 +400,7 @@ toml::table* find_named(toml::array& tables, const std::string& name) {
     return nullptr;
 }
 
-// The value after the equals sign, read as TOML where it is TOML, as a text where it is not.
+// The value after the equals sign, parsed as TOML or, if it is not TOML, taken as a string.
 toml::table parse_value(const std::string& key, const std::string& value) {
     try {
         return toml::parse("\"" + key + "\" = " + value);
@@ -410,13 +409,13 @@ toml::table parse_value(const std::string& key, const std::string& value) {
     }
 }
 
-// Where a change goes: "body.brain.nodes" as three words.
+// The path of the key that a change sets: "body.brain.nodes" as three words.
 std::vector<std::string> target(const Change& change) {
     return split(change.substr(0, change.find('=')), '.');
 }
 
-// Of keys of which only one may be given, a change to one takes the others away.
-void take_away_others(toml::table& table, const std::string& key) {
+// Removes the keys that exclude a changed one.
+void remove_excluded(toml::table& table, const std::string& key) {
     const std::vector<std::string_view> choices[] = {{"density", "mass"},
                                                      {"youngs_modulus", "stiffness", "springs", "factor"},
                                                      {"nodes", "spacing"},
@@ -436,7 +435,7 @@ bool names_source(const Change& change) {
            std::ranges::count(sources, words[2]) > 0;
 }
 
-// Of tables the names, or the numbers of those that have none: "skin, 2".
+// The names of tables, and the numbers of those without one: "skin, 2".
 std::string names_in(const toml::array& tables) {
     std::string list;
     for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -447,7 +446,7 @@ std::string names_in(const toml::array& tables) {
     return list;
 }
 
-// "collider.3={…}" where there are two: a third.
+// If there are two colliders, "collider.3={…}" adds a third.
 void add_one(toml::array& tables, const std::string& key, const Change& change, const SceneSource& source) {
     const std::string list = target(change).front(), text = change.substr(change.find('=') + 1);
     const toml::table value = parse_value(key, text);
@@ -456,7 +455,8 @@ void add_one(toml::array& tables, const std::string& key, const Change& change, 
         const std::string names = names_in(tables), first = names.substr(0, names.find(','));
         const std::string add = fmt::format("{}.{}={{ … }} to add one", list, tables.size() + 1);
         const bool is_name = find_named(tables, key) != nullptr;
-        source.fail(0, one || is_name ? "it does not name a key" : fmt::format("it does not say which {}", list),
+        source.fail(0,
+                    one || is_name ? "it does not name a key" : fmt::format("it does not say which {}", list),
                     tables.empty() ? "write " + add
                                    : fmt::format("write {}.{}.{}={}, or {}", list, is_name ? key : first,
                                                  one || is_name ? "KEY" : key, one ? "…" : text, add));
@@ -498,13 +498,9 @@ void apply(toml::table& root, const Change& change) {
         for (const char* old :
              {"volume", "surface", "dims", "cloth", "iso", "units", "colour_map", "normal_map", "weave"})
             table->erase(old);
-    take_away_others(*table, key);
+    remove_excluded(*table, key);
     table->insert_or_assign(key, *value.get(key));
 }
-
-}  // namespace
-
-namespace {
 
 std::string nth_line(const std::string& text, int number) {
     std::istringstream lines(text);
@@ -513,27 +509,27 @@ std::string nth_line(const std::string& text, int number) {
     return line;
 }
 
-// The unit that a key's numbers are in, "Pa", as far as reading the scene with another line in its place
-// finds out; else empty.
+// The unit of a key's numbers ("Pa"), found by reading the scene with its line replaced by `line`; empty if
+// that does not find it.
 std::string unit_of(const std::string& text, int number, const std::string& line) {
     std::istringstream lines(text);
-    std::string mended;
+    std::string corrected;
     int n = 0;
-    for (std::string one; std::getline(lines, one);) mended += (++n == number ? line : one) + "\n";
+    for (std::string one; std::getline(lines, one);) corrected += (++n == number ? line : one) + "\n";
     const SceneSource source{"a scene"};
     SceneReading reading{source};
     try {
-        const toml::table root = toml::parse(mended);
+        const toml::table root = toml::parse(corrected);
         Scene scene;
         Reader reader(root, reading, "");
         read_fields(reader, scene);
-    } catch (const std::exception&) {  // of some other line: what was read until then is known
+    } catch (const std::exception&) {  // an error of another line: keys before it have been read
     }
     const auto found = reading.units.find(number);
     return found == reading.units.end() ? "" : found->second;
 }
 
-// What to write instead of a line that is no TOML, by the mistakes that people make.
+// The remedy for a line that is not TOML, for common mistakes.
 std::string advice_on(const std::string& text, int number) {
     const std::string line = nth_line(text, number);
     const std::string value = R"(([+-]?[0-9][0-9_]*(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?))";
@@ -544,8 +540,8 @@ std::string advice_on(const std::string& text, int number) {
         return "write numbers with a point: " + with_point(found[2]);
     if (is(key + value + R"(\s*([^\s0-9,;\]}#"'=][^\s,;\]}#"'=]*))" + end)) {
         const std::string name = found[1], amount = found[2], given = found[3];
-        const std::string mended = fmt::format("{} = {}", name, with_point(amount));
-        const std::string unit = unit_of(text, number, mended);
+        const std::string corrected = fmt::format("{} = {}", name, with_point(amount));
+        const std::string unit = unit_of(text, number, corrected);
         return fmt::format("write the number alone, without {}{}", given,
                            unit.empty() ? "" : ": " + name + " is in " + unit);
     }
@@ -571,7 +567,7 @@ toml::table changed_table(const std::string& text, const SceneSource& source,
         const int line = int(error.source().begin.line);
         source.fail(line, std::string(error.description()), advice_on(text, line));
     }
-    // Another source first: it takes away what was said of the old one.
+    // New sources come first, because they remove the keys of the old ones.
     std::vector<Change> ordered(changes.begin(), changes.end());
     std::stable_partition(ordered.begin(), ordered.end(), names_source);
     for (const Change& change : ordered) apply(root, change);

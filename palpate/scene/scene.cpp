@@ -17,7 +17,7 @@ std::optional<std::filesystem::path> find(const std::string& name, const std::fi
     if (const char* data = std::getenv("PALPATE_DATA")) places.push_back(data);
     places.push_back("/usr/share/mricron/templates");
     for (const auto& place : places) {
-        std::error_code error;  // a device or a pipe is never meant
+        std::error_code error;  // devices and pipes are skipped
         const auto kind = std::filesystem::status(place / name, error).type();
         using enum std::filesystem::file_type;
         if (!name.empty() && (kind == regular || kind == directory)) return place / name;
@@ -29,7 +29,7 @@ std::optional<std::filesystem::path> find(const std::string& name, const std::fi
 
 std::string Lines::where(const std::string& key, const std::string& file) const {
     if (const int line = of(key); line > 0) return fmt::format("{}, line {}", file, line);
-    return keys.empty() ? file : "--set";  // without keys the recipe is of no text
+    return keys.empty() ? file : "--set";  // a recipe without keys is not from a file
 }
 
 vec3 sky(const Scene& scene) {
@@ -48,15 +48,11 @@ std::string remedy_for_missing(const std::string& name, const std::filesystem::p
     std::vector<std::string> there;
     std::error_code error;
     for (const auto& file : std::filesystem::directory_iterator(beside.empty() ? "." : beside, error))
-        if (file.exists(error))
-            there.push_back(file.path().filename().string());  // no link that leads nowhere
+        if (file.exists(error)) there.push_back(file.path().filename().string());  // no broken link
     if (const std::string meant = nearest(wanted, there); !meant.empty())
         return "did you mean " + meant + "?";
-    return "name it from the scene's folder, or set PALPATE_DATA to the folder that holds it; the brain and "
-           "the "
-           "head come with Debian's mricron-data, other meshes with scripts/get-data or from where their "
-           "scene "
-           "says";
+    return "name it from the scene's folder, or set PALPATE_DATA to its folder; the brain and the head come "
+           "with Debian's mricron-data, other meshes with scripts/get-data or as their scene says";
 }
 
 std::filesystem::path find_data(const std::string& name, const std::filesystem::path& folder) {

@@ -55,9 +55,8 @@ struct Choice {
 /// A part of a body that is harder or softer than the rest: selected nodes, or those with this label in a
 /// label volume (a segmentation), and one of the last three. Where regions overlap, the last one wins.
 struct Region {
-    Choice choice;  // its fields are keys of the region itself
-    std::string
-        labels;  // a file of voxels (mm unless the body says otherwise), turned and moved as the body is
+    Choice choice;       // its fields are keys of the region itself
+    std::string labels;  // a file of voxels, in the body's units (or mm), rotated and moved like the body
     std::optional<float> label;  // the label of the region
     float youngs_modulus = 0;    // Pa
     float stiffness = 0;         // N/m of each spring
@@ -69,7 +68,7 @@ struct Region {
 /// How a surface is coloured.
 enum class Shade {
     colour,   // its colour, lit
-    normals,  // its normals as they are at the moment: x, y and z as red, green and blue (2005, figure 6)
+    normals,  // its present normals: x, y and z as red, green and blue (2005, figure 6)
 };
 
 inline std::span<const Named<Shade>> names(Shade) {

@@ -19,7 +19,7 @@
 namespace palpate {
 namespace {
 
-// One surface on its way, and where to tell of it.
+// A surface while it is made, and its report.
 struct Work {
     const BodyRecipe& recipe;
     const std::filesystem::path& folder;
@@ -30,7 +30,7 @@ struct Work {
         if (progress) progress(recipe.name + ": " + doing, fraction);
     }
     void did(const std::string& step) { result.steps.push_back(step); }
-    // What changed the surface by more than a hundredth is a note as well.
+    // A step that changed the surface by more than a hundredth is a note as well.
     void did(const Repair& step) {
         did(in_words(step));
         if (step.share > 0.01) result.notes.push_back(in_words(step));
@@ -41,12 +41,12 @@ const std::string& file_of(const BodyRecipe& recipe) {
     return recipe.volume.empty() ? recipe.surface : recipe.volume;
 }
 
-// A surface that must enclose nothing: cloth, or what a box carries.
+// A surface that need not enclose a volume: cloth, or a surface in a cage.
 bool may_be_open(const BodyRecipe& recipe) { return recipe.sheet || recipe.cage; }
 
 float suggested(const Volume& volume, std::vector<std::string>& notes) {
     const auto iso = suggested_iso(histogram(volume));
-    if (!iso) throw Error("all values alike", volume.name, "give a volume that holds something");
+    if (!iso) throw Error("all values are equal", volume.name, "give a volume that holds something");
     notes.push_back(
         fmt::format("its surface is taken at {}, as its values suggest; iso says otherwise", *iso));
     return *iso;
@@ -71,7 +71,8 @@ Mesh from_file(Work& work) {
     return mesh;
 }
 
-// By how much `size` scales the mesh as it lies; turning it and dropping specks may change that a little.
+// The factor by which `size` scales the mesh in its present state; rotating it and dropping specks may change
+// that a little.
 float scale_of(const Mesh& mesh, const BodyRecipe& recipe) {
     const vec3 sides = bounds(mesh).size();
     return recipe.size > 0 ? recipe.size / std::max({sides.x, sides.y, sides.z}) : 1;
@@ -98,18 +99,19 @@ void mend(Mesh& mesh, Work& work) {
         work.tell(std::string(doing), 0.3 + 0.2 * done);
     };
     std::vector<Repair> steps = repair(mesh, settings, tell);
-    const double unit = std::pow(double(scale_of(mesh, recipe)), 3);  // now that it is as large as it will be
+    const double unit = std::pow(double(scale_of(mesh, recipe)), 3);  // at its final size
     for (Repair& step : steps) {
         step.volume *= unit;
         work.did(step);
     }
 }
 
-// Which parts of a file are in the solid that was made of it: most of their faces lie in it or on it.
+// Which parts of a file are in the solid that was made from it: those with most of their faces inside or on
+// it.
 std::vector<char> parts_in(const Mesh& solid, const Mesh& mesh, const Parts& part) {
     constexpr std::size_t most_looks = 100;  // a part
     const vec3 size = bounds(solid).size();
-    const float on = 0.005f * std::max({size.x, size.y, size.z});  // about, where voxels made it
+    const float on = 0.005f * std::max({size.x, size.y, size.z});  // the accuracy of remeshing by voxels
     const Tree tree(solid);
     const WindingNumber winding(tree);
     std::vector<std::vector<Index>> faces(part.count);
@@ -128,8 +130,8 @@ std::vector<char> parts_in(const Mesh& solid, const Mesh& mesh, const Parts& par
     return in;
 }
 
-// What maps are drawn on: the file's own surface, since mending forgets texture coordinates; as much of it as
-// is kept in `solid`, and right way out.
+// The surface on which maps are drawn, because repair drops texture coordinates: the parts of the file's own
+// surface that are in `solid`, oriented outwards.
 Mesh textured(const Mesh& mesh, const Mesh& solid, const BodyRecipe& recipe) {
     if (mesh.uvs.empty())
         throw Error("no texture coordinates at all corners, for colour_map, normal_map or weave,",
@@ -166,7 +168,7 @@ void simplify(Mesh& mesh, Work& work) {
     const BodyRecipe& recipe = work.recipe;
     const bool solid = !may_be_open(recipe);
     const double scale = std::pow(double(scale_of(mesh, recipe)), 3);
-    // A step and what it did to the volume.
+    // Reports a step, with its change of volume.
     double before = solid ? volume(mesh) : 0;
     auto did = [&](const std::string& what, std::size_t count) {
         if (count == 0) return;
@@ -178,18 +180,18 @@ void simplify(Mesh& mesh, Work& work) {
     if (passes > 0) smooth(mesh, passes);
     did("passes of smoothing", std::size_t(std::max(passes, 0)));
     if (recipe.faces <= 0) return;
-    const std::size_t most = parts(mesh).count, went = decimate(mesh, std::size_t(recipe.faces));
-    if (went == 0) return;
-    did("faces simplified away", went);
+    const std::size_t most = parts(mesh).count, removed = decimate(mesh, std::size_t(recipe.faces));
+    if (removed == 0) return;
+    did("faces simplified away", removed);
     if (solid)
         did("faces replaced that cut through each other", mend_intersections(mesh, intersections(mesh)));
-    // What simplifying broke off.
+    // Pieces that decimation broke off.
     if (solid) did("smaller parts dropped", drop_crumbs(mesh, most).parts);
     if (!solid && recipe.largest) did("smaller parts dropped", keep_largest_sheet(mesh).parts);
     if (mesh.triangles.empty()) throw Error("no face is left", file_of(recipe), "ask for more faces");
 }
 
-// What is drawn goes where the mesh goes.
+// Places the mesh, and what is drawn in the same way.
 void place(Mesh& mesh, Mesh& drawn, const BodyRecipe& recipe) {
     rotate(mesh, recipe.rotate);
     rotate(drawn, recipe.rotate);

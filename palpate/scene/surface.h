@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// A mended surface, and the steps that made it, one line each.
+/// A repaired surface, and the steps that made it, one line each.
 struct CleanSurface {
     Mesh mesh;
     /// For a recipe with maps: what is drawn, the file's original surface, in the same place. It has several
@@ -20,8 +20,8 @@ struct CleanSurface {
     std::vector<std::string> notes;  // automatic decisions, and what looks wrong
 };
 
-/// Makes the surface of one recipe: reads, mends, decimates and places it. It encloses a volume, except for a
-/// sheet or a cage. Not for a plain box or a rectangle of cloth, whose surface comes from its nodes. Throws
+/// Makes the surface of one recipe: reads, repairs, decimates and places it. It encloses a volume, except for
+/// a sheet or a cage. Not for a plain box or a rectangle of cloth, whose surface comes from its nodes. Throws
 /// Error, also if the recipe has maps but the file has no texture coordinates.
 CleanSurface make_surface(const BodyRecipe& recipe, const std::filesystem::path& folder,
                           const Progress& progress = {});

@@ -8,13 +8,13 @@
 namespace palpate {
 namespace {
 
-// A place of the surface, and as much of it as it stands for.
+// A sample of a surface, with its share of the area.
 struct PlaceOnWall {
     vec3 from, inward;
     float area;  // m²
 };
 
-// Places all over a surface, about a spacing apart.
+// Samples all over a surface, about a spacing apart.
 std::vector<PlaceOnWall> places_on(const Mesh& mesh, float spacing) {
     constexpr int most_rows = 16;  // of cells in a triangle
     std::vector<PlaceOnWall> places;
@@ -42,7 +42,7 @@ double area_of(const std::vector<PlaceOnWall>& places) {
     return sum;
 }
 
-// How far it is from `from` along the unit vector `along` to a mesh, m; nothing if it lies elsewhere.
+// The distance from `from` along the unit vector `along` to a mesh, m; nothing if the ray misses it.
 std::optional<float> way_to(const Mesh& mesh, dvec3 from, dvec3 along) {
     double nearest = std::numeric_limits<double>::infinity();
     for (uvec3 t : mesh.triangles) {
@@ -50,7 +50,7 @@ std::optional<float> way_to(const Mesh& mesh, dvec3 from, dvec3 along) {
                     ac = dvec3(mesh.positions[t.z]) - a;
         const dvec3 across = glm::cross(along, ac);
         const double area = glm::dot(ab, across);
-        if (area == 0) continue;  // it runs beside the triangle
+        if (area == 0) continue;  // parallel to the triangle
         const double u = glm::dot(from - a, across) / area;
         const double v = glm::dot(along, glm::cross(from - a, ab)) / area;
         const double way = glm::dot(ac, glm::cross(from - a, ab)) / area;
@@ -66,18 +66,18 @@ std::optional<ThinWalls> thin_walls(const Mesh& mesh, const DistanceField& field
     const float spacing = field.spacing;
     std::vector<PlaceOnWall> places = places_on(mesh, spacing);
     const double all = area_of(places);
-    // Half a spacing deep, the field of a thick wall says so.
+    // Thick walls are where the field is correct half a spacing inside.
     std::erase_if(places, [&](const PlaceOnWall& place) {
         return field.at(place.from + 0.5f * spacing * place.inward) < -0.25f * spacing;
     });
-    // Beside an edge a thick body seems thin as well: what lies across decides.
+    // Near its edges a thick body fails that test, too; the distance to the opposite wall decides.
     float thinnest = std::numeric_limits<float>::infinity();
     double looked_at = 0, thin = 0;
     const std::size_t lines =
         std::clamp<std::size_t>(most_meetings / std::max<std::size_t>(mesh.triangles.size(), 1), 10, 200);
     for (std::size_t i = 0; i < places.size(); i += places.size() / lines + 1) {
         const auto& [from, inward, area] = places[i];
-        const float slack = 1e-3f * spacing;  // off the place's own triangle
+        const float slack = 1e-3f * spacing;  // so that the ray misses the sample's own triangle
         const auto way = way_to(mesh, from + slack * inward, inward);
         looked_at += area;
         if (!way || *way + slack > 1.5f * spacing) continue;

@@ -334,7 +334,7 @@ class Reader {
         if (!std::isfinite(value)) wrong(key, node, wanted, how_to_write(node));
     }
 
-    // A number in quotes, or with a decimal comma, can be told.
+    // The remedy for a value that is not a number, also for one in quotes or with a decimal comma.
     static std::string how_to_write(const toml::node& node) {
         const std::string given = node.value_exact<std::string>().value_or("");
         std::string text = given;
@@ -346,7 +346,7 @@ class Reader {
                          : "write a number";
     }
 
-    // Of a number, or of each of several.
+    // Checks a number, or each of several.
     void check(std::string_view key, const toml::node& node, const NumberRange& range) {
         const std::string unit = range.unit.empty() ? "" : " " + std::string(range.unit);
         auto look_at = [&](double value) {
@@ -369,31 +369,20 @@ class Reader {
             look_at(number_of(node));
     }
 
-    // What others call our keys.
-    static constexpr std::pair<std::string_view, const char*> other_words[] = {{"mesh", "surface"},
-                                                                               {"file", "surface"},
-                                                                               {"model", "surface"},
-                                                                               {"scale", "size"},
-                                                                               {"position", "move"},
-                                                                               {"translate", "move"},
-                                                                               {"translation", "move"},
-                                                                               {"fixed", "pin"},
-                                                                               {"E", "youngs_modulus"},
-                                                                               {"young", "youngs_modulus"},
-                                                                               {"nu", "poisson"},
-                                                                               {"poisson_ratio", "poisson"},
-                                                                               {"poissons_ratio", "poisson"},
-                                                                               {"rho", "density"},
-                                                                               {"k", "stiffness"},
-                                                                               {"viscosity", "damping"},
-                                                                               {"fov", "angle"},
-                                                                               {"target", "look_at"},
-                                                                               {"dt", "step"},
-                                                                               {"g", "gravity"},
-                                                                               {"end", "duration"},
-                                                                               {"solver", "integrator"}};
+    // Common names of our keys in other programs.
+    static constexpr std::pair<std::string_view, const char*> other_words[] = {
+        {"mesh", "surface"},      {"file", "surface"},
+        {"model", "surface"},     {"scale", "size"},
+        {"position", "move"},     {"translate", "move"},
+        {"translation", "move"},  {"fixed", "pin"},
+        {"E", "youngs_modulus"},  {"young", "youngs_modulus"},
+        {"rho", "density"},       {"k", "stiffness"},
+        {"viscosity", "damping"}, {"fov", "angle"},
+        {"target", "look_at"},    {"dt", "step"},
+        {"g", "gravity"},         {"end", "duration"},
+        {"solver", "integrator"}};
 
-    // What to do about a key that is not known here.
+    // The remedy for a key that this table does not have.
     std::string advice(const std::string& name) const {
         for (const auto& [word, key] : other_words)
             if (name == word && known_.contains(key)) return fmt::format("did you mean \"{}\"?", key);
@@ -416,8 +405,8 @@ class Reader {
         return "its keys are " + list;
     }
 
-    // The table that such a key belongs to, by its path: one inside this one, or one of which a scene has a
-    // single one; from all of the scene any. Of several the outermost; empty if there is none.
+    // The path of the table to which a key belongs: one inside this one, or one that a scene has once; for a
+    // key of the scene itself, any. The outermost of several; empty if there is none.
     std::string table_with(const std::string& name) const {
         std::string best;
         auto depth = [](const std::string& path) { return std::ranges::count(path, '.'); };

@@ -286,9 +286,9 @@ Remade remake(const Mesh& mesh, float voxel, const std::string& name, const Prog
     made.hollows = fill_hollows(made.solid, small);
     made.bits = drop_bits(made.solid);
     find_thin(small, depths, made);
-    for (Dropped* went : {&made.hollows, &made.bits}) {
-        went->volume *= unit * unit * unit;
-        went->area *= unit * unit;
+    for (Dropped* removed : {&made.hollows, &made.bits}) {
+        removed->volume *= unit * unit * unit;
+        removed->area *= unit * unit;
     }
     for (vec3& p : made.solid.positions) p = vec3(origin + unit * dvec3(p));
     return made;

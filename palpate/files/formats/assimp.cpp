@@ -45,7 +45,7 @@ class Beside : public Assimp::DefaultIOSystem {
 
  private:
     const Source& source_;
-    std::string_view bytes_;  // the file's, perhaps mended
+    std::string_view bytes_;  // the file's, perhaps corrected
     std::string name_;
 };
 
@@ -64,7 +64,7 @@ Place world_of(const aiNode& node) {
 
 // Skinning: the weighted transform of each vertex by its bones; a vertex without bones stays with the node.
 // Empty if the mesh has no bones, or one that is not a node.
-std::vector<Place> carried(const aiScene& scene, const aiMesh& mesh, const Place& node) {
+std::vector<Place> skinned(const aiScene& scene, const aiMesh& mesh, const Place& node) {
     if (!mesh.HasBones()) return {};
     MeanPlaces places(mesh.mNumVertices);
     for (const aiBone* bone : std::span(mesh.mBones, mesh.mNumBones)) {
@@ -85,7 +85,7 @@ void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Dra
         const aiMesh& mesh = *scene.mMeshes[number];
         const std::size_t first = draft.positions.size();
         if (first + mesh.mNumVertices > ~Index(0)) throw std::bad_alloc();
-        const std::vector<Place> by_bones = carried(scene, mesh, node_place);
+        const std::vector<Place> by_bones = skinned(scene, mesh, node_place);
         const auto place = [&](unsigned i) -> const Place& {
             return by_bones.empty() ? node_place : by_bones[i];
         };
@@ -95,7 +95,7 @@ void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Dra
         if (mesh.HasNormals())
             for (unsigned i = 0; i < mesh.mNumVertices; ++i)
                 draft.normals.push_back(place(i).normal(vector(mesh.mNormals[i])));
-        if (mesh.HasTextureCoords(0))  // whose v assimp has turned up where a format has it down
+        if (mesh.HasTextureCoords(0))  // assimp has flipped v if the format's points down
             for (aiVector3D v : std::span(mesh.mTextureCoords[0], mesh.mNumVertices))
                 draft.uvs.push_back({v.x, v.y});
         for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
@@ -115,24 +115,24 @@ void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Dra
 
 // Collada with rotation axes made unit, since assimp would shear otherwise. <rotate ...>x y z angle</rotate>
 std::string with_unit_axes(std::string_view text) {
-    std::string mended;
+    std::string corrected;
     for (std::size_t at; (at = text.find("<rotate")) != std::string_view::npos;) {
         const std::size_t start = std::min(text.find('>', at), text.size() - 1) + 1,
                           end = text.find('<', start);
         std::string_view numbers = text.substr(start, end - start);
-        mended += text.substr(0, start);
+        corrected += text.substr(0, start);
         text.remove_prefix(std::min(end, text.size()));
         dvec3 axis(0);
         std::string_view left = numbers;
         for (int k = 0; k < 3; ++k) axis[k] = spelled(word(left)).value_or(0);
         const double length = glm::length(axis);
         if (length > 0 && std::isfinite(length) && std::abs(length - 1) > 1e-6)
-            mended += fmt::format("{:.9f} {:.9f} {:.9f}{}", axis.x / length, axis.y / length, axis.z / length,
-                                  left);
+            corrected += fmt::format("{:.9f} {:.9f} {:.9f}{}", axis.x / length, axis.y / length,
+                                     axis.z / length, left);
         else
-            mended += numbers;
+            corrected += numbers;
     }
-    return mended += text;
+    return corrected += text;
 }
 
 // ---- units ----
@@ -178,16 +178,16 @@ double stated_unit(const Source& source, const std::string& format, const aiScen
     return format == ".dxf" ? dxf_unit(source.whole()) : 0;
 }
 
-// ---- what moves vertices at rest and is not read ----
+// ---- what would move vertices but is not read ----
 
-void tell_of_skins_and_targets(const aiScene& scene, std::vector<std::string>& notes) {
+void note_skins_and_targets(const aiScene& scene, std::vector<std::string>& notes) {
     const std::span meshes(scene.mMeshes, scene.mNumMeshes);
-    const auto astray = [&](const aiMesh* mesh) {
+    const auto lacks_bones = [&](const aiMesh* mesh) {
         const std::span bones(mesh->mBones, mesh->mNumBones);
         return std::ranges::any_of(bones,
                                    [&](const aiBone* b) { return !scene.mRootNode->FindNode(b->mName); });
     };
-    if (const auto skins = std::ranges::count_if(meshes, astray))
+    if (const auto skins = std::ranges::count_if(meshes, lacks_bones))
         notes.push_back(
             fmt::format("left out the skins of {} meshes, because some of their bones are not nodes", skins));
     const auto has_targets = [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; };
@@ -220,10 +220,11 @@ Draft read_with_assimp(const Source& source) {
     std::filesystem::path name = std::filesystem::path(source.name()).filename();
     if (name.extension() == ".gz") name.replace_extension();
     const std::string format = ending(name);
-    const std::string mended = format == ".dae" ? with_unit_axes(source.whole()) : "";
+    const std::string corrected = format == ".dae" ? with_unit_axes(source.whole()) : "";
     const Written written = isolated("assimp", source.name(), allowance, [&](std::FILE* to) {
         Assimp::Importer importer;
-        importer.SetIOHandler(new Beside(source, mended.empty() ? source.whole() : mended, name.string()));
+        importer.SetIOHandler(
+            new Beside(source, corrected.empty() ? source.whole() : corrected, name.string()));
         importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
         const aiScene* scene = importer.ReadFile(name.string(), 0);
         const std::string_view error = importer.GetErrorString();
@@ -234,9 +235,9 @@ Draft read_with_assimp(const Source& source) {
         Draft draft;
         draft.unit = stated_unit(source, format, *scene);
         add(*scene, *scene->mRootNode, aiMatrix4x4(), draft);
-        if (format == ".dae")  // brought to metres already
+        if (format == ".dae")  // assimp has scaled it to metres
             for (dvec3& p : draft.positions) p /= draft.unit;
-        tell_of_skins_and_targets(*scene, draft.notes);
+        note_skins_and_targets(*scene, draft.notes);
         if (draft.normals.size() != draft.positions.size()) draft.normals.clear();  // a part has none
         if (draft.uvs.size() != draft.positions.size()) draft.uvs.clear();
         put(to, std::vector{draft.unit});

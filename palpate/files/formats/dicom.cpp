@@ -146,8 +146,8 @@ std::map<std::string, Group> by_trouble(const Group& all) {
     refuse_slice(worst->second[0]);
 }
 
-// Some exporters number every slice as a series. So series of one slice each that agree in everything count
-// as one volume: all that are like the named one, or the first. Empty if they differ.
+// Some exporters make every slice a series. So series of one slice each that agree in everything count as one
+// volume: all that are like the named one, or the first. Empty if they differ.
 Group joined(const std::map<std::string, Group>& singles, const std::filesystem::path& named,
              std::vector<std::string>& notes) {
     Group slices;
@@ -355,12 +355,12 @@ Group of_one_time(Group slices, const std::filesystem::path& named, std::vector<
     const Group& taken = taken_of(volumes, named);
     notes.push_back(fmt::format(
         "{} volumes in one place, distinguished by {}: {} taken; name a file of another "
-        "to have that",
+        "to read that",
         volumes.size(), by, named.empty() ? "that of " + name(taken[0]) : "the one that was named"));
     return taken;
 }
 
-// ---- where they lie ----
+// ---- their grid ----
 
 // Slice i lies at first + i · step.
 struct Line {

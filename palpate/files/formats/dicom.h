@@ -18,7 +18,7 @@ struct Slice {
     int frame = 0;  // of a file with several
     /// Why it cannot be a slice of a volume, and what to do about it; otherwise empty.
     std::string trouble, remedy;
-    bool damaged = false;  // it is a slice of which some is missing
+    bool damaged = false;  // it is an incomplete slice
 
     std::string series;       // the identifier of its series
     std::string study;        // the identifier of its examination, and of the patient
@@ -48,7 +48,7 @@ std::vector<Slice> scan(const std::vector<std::filesystem::path>& files);
 
 /// The values of these slices, one after the other; slope and intercept, or a table, are applied. `path`: for
 /// messages.
-/// Throws Error if one is truncated, damaged, or packed in a way that GDCM does not know.
+/// Throws Error if one is truncated, damaged, or compressed in a way that GDCM does not know.
 std::vector<float> read_pixels(const std::vector<Slice>& slices, const std::filesystem::path& path);
 
 /// The slices of one volume, from the lowest to the highest, and their grid.

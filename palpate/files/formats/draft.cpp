@@ -60,7 +60,7 @@ BoxOfPoints box_of_points(std::span<const dvec3> points) {
     return box;
 }
 
-// Of the 24 bits of a float's mantissa, 11 may be used up by the distance.
+// The distance may use up 11 of the 24 bits of a float's mantissa.
 bool too_far_for_floats(const BoxOfPoints& box) {
     const dvec3 size = box.high - box.low, far = glm::max(glm::abs(box.low), glm::abs(box.high));
     const double longest = std::max({size.x, size.y, size.z});
@@ -72,11 +72,12 @@ dvec3 origin_for(const Draft& draft, double scale, const std::string& name, std:
     const BoxOfPoints box = box_of_points(draft.positions);
     if (!too_far_for_floats(box)) return dvec3(0);
     if (draft.single)
-        throw Error("a mesh so far from the origin that its shape is already lost", name, "move it to the origin first");
+        throw Error("a mesh so far from the origin that its shape is already lost", name,
+                    "move it to the origin first");
     const dvec3 origin = box.low + 0.5 * (box.high - box.low), by = 0.0 - origin * scale;
     notes.push_back(fmt::format(
-        "moved to the origin by ({:.15g}, {:.15g}, {:.15g}) m: so far from it, floats would lose the shape", by.x,
-        by.y, by.z));
+        "moved to the origin by ({:.15g}, {:.15g}, {:.15g}) m: so far from it, floats would lose the shape",
+        by.x, by.y, by.z));
     return origin;
 }
 
@@ -116,9 +117,9 @@ bool too_far_for_floats(std::span<const dvec3> positions) {
 Mesh finish(const Draft& draft, std::optional<Units> units, const std::string& name,
             std::vector<std::string>* notes) {
     check(draft, name);
-    std::vector<std::string> said = draft.notes;
-    const double scale = scale_for(draft, units, said);
-    const dvec3 origin = origin_for(draft, scale, name, said);
+    std::vector<std::string> all_notes = draft.notes;
+    const double scale = scale_for(draft, units, all_notes);
+    const dvec3 origin = origin_for(draft, scale, name, all_notes);
     Mesh mesh;
     mesh.positions.reserve(draft.positions.size());
     for (dvec3 p : draft.positions) mesh.positions.emplace_back(p - origin);
@@ -126,12 +127,12 @@ Mesh finish(const Draft& draft, std::optional<Units> units, const std::string& n
     if (mesh.triangles.empty()) throw only_points_or_lines(name);
     const auto small = [](Index corners) { return corners < 3; };
     if (const std::size_t count = draft.loose + std::size_t(std::ranges::count_if(draft.sizes, small)))
-        said.push_back(count == 1 ? "left out a point or a line"
-                                  : fmt::format("left out {} points and lines", count));
+        all_notes.push_back(count == 1 ? "left out a point or a line"
+                                       : fmt::format("left out {} points and lines", count));
     for (vec3& p : mesh.positions) p *= float(scale);
-    mesh.normals = attribute(draft.normals, "normals", said);
-    mesh.uvs = attribute(draft.uvs, "texture coordinates", said);
-    if (notes) notes->insert(notes->end(), said.begin(), said.end());
+    mesh.normals = attribute(draft.normals, "normals", all_notes);
+    mesh.uvs = attribute(draft.uvs, "texture coordinates", all_notes);
+    if (notes) notes->insert(notes->end(), all_notes.begin(), all_notes.end());
     return mesh;
 }
 

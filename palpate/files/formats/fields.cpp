@@ -21,7 +21,7 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, last + 1 - first);
 }
 
-// Nothing at the end of the file. `left`: how many letters a header may still have.
+// Nothing at the end of the file. `left`: how many more characters a header may have.
 std::optional<std::string> next_line(std::istream& in, std::size_t& left, const std::filesystem::path& path) {
     std::string line;
     char c;

@@ -13,11 +13,11 @@ Draft read_obj(Source source);
 Draft read_off(Source source);
 Draft read_ply(Source source);
 Draft read_stl(Source source);
-Draft read_vrml(Source source);        // VRML 2, and X3D in the same words
+Draft read_vrml(Source source);        // VRML 2, and X3D in VRML's syntax
 Draft read_vrml_nodes(Source source);  // the same without its header
 Draft read_x3d(Source source);         // X3D as XML
 
-/// Whether assimp has a reader for files of this ending (".fbx").
+/// Whether assimp has a reader for files with this extension (".fbx").
 bool assimp_knows(const std::string& ending);
 
 /// Reads the file in a process of its own, by its extension.

@@ -36,7 +36,7 @@ const Tag pixels(0x7fe0, 0x0010);
 const Tag pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145),
     plane_position(0x0020, 0x9113), plane_orientation(0x0020, 0x9116);
 
-// ---- what a header says ----
+// ---- the attributes of a header ----
 
 std::string unpadded(std::string text) {
     text.erase(std::find(text.begin(), text.end(), '\0'), text.end());
@@ -64,7 +64,7 @@ struct Attributes {
     const DataSet* own = nullptr;
     const DataSet* shared = nullptr;
 
-    // `group`: the sequence in which a file with several pictures keeps it.
+    // `group`: the sequence in which a multi-frame file stores it.
     std::string operator()(const Tag& tag, const Tag& group) const {
         for (const DataSet* set : {own, shared})
             if (const DataSet* inner = set ? item(*set, group, 0) : nullptr)
@@ -116,7 +116,7 @@ double last_place(std::string_view text) {
     return std::pow(10.0, -most);
 }
 
-// Rows and columns, of unit length and at right angles, and what goes up from both.
+// Rows, columns and their cross product, all unit and at right angles.
 std::optional<dmat3> direction_of(const std::string& text) {
     const auto n = numbers(text);
     if (n.size() != 6) return std::nullopt;
@@ -127,12 +127,12 @@ std::optional<dmat3> direction_of(const std::string& text) {
     return dmat3(x, glm::cross(z, x), z);
 }
 
-void find_spacing(const Attributes& says, Slice& slice) {
+void find_spacing(const Attributes& attribute, Slice& slice) {
     const std::pair<const char*, Tag> sources[] = {{"PixelSpacing", Tag(0x0028, 0x0030)},
                                                    {"ImagerPixelSpacing", Tag(0x0018, 0x1164)},
                                                    {"NominalScannedPixelSpacing", Tag(0x0018, 0x2010)}};
     for (const auto& [name, tag] : sources) {
-        const auto n = numbers(says(tag, pixel_measures));
+        const auto n = numbers(attribute(tag, pixel_measures));
         if (n.size() < 2 || !(n[0] > 0 && n[1] > 0)) continue;
         slice.spacing = dvec2(n[1], n[0]);  // the first is from row to row
         slice.spacing_source = name;
@@ -140,26 +140,26 @@ void find_spacing(const Attributes& says, Slice& slice) {
     }
 }
 
-std::vector<std::pair<std::string, std::string>> marks_of(const Attributes& says,
+std::vector<std::pair<std::string, std::string>> marks_of(const Attributes& attribute,
                                                           const std::filesystem::path& file) {
     const Tag content(0x0020, 0x9111), none(0, 0);
-    return {{"AcquisitionNumber", says(Tag(0x0020, 0x0012))},
-            {"TemporalPositionIdentifier", says(Tag(0x0020, 0x0100))},
-            {"TemporalPositionIndex", says.binary<0x0020, 0x9128>(content)},
-            {"StackID", says(Tag(0x0020, 0x9056), content)},
-            {"EchoNumbers", says(Tag(0x0018, 0x0086))},
-            {"EchoTime", says(Tag(0x0018, 0x0081))},
-            {"EffectiveEchoTime", says.binary<0x0018, 0x9082>(Tag(0x0018, 0x9114))},
-            {"InversionTime", says(Tag(0x0018, 0x0082))},
-            {"TriggerTime", says(Tag(0x0018, 0x1060))},
-            {"NominalPercentageOfCardiacPhase", says(Tag(0x0020, 0x9241))},
-            {"DiffusionBValue", says.binary<0x0018, 0x9087>(Tag(0x0018, 0x9117))},
-            {"ImageType", says(Tag(0x0008, 0x0008))},
-            {"FrameType", says(Tag(0x0008, 0x9007), Tag(0x0018, 0x9226))},
-            {"AcquisitionTime", says(Tag(0x0008, 0x0032))},
-            {"AcquisitionDateTime", says(Tag(0x0008, 0x002a))},
-            {"ContentTime", says(Tag(0x0008, 0x0033))},
-            {"their files", says.own ? file.filename().string() : ""}};
+    return {{"AcquisitionNumber", attribute(Tag(0x0020, 0x0012))},
+            {"TemporalPositionIdentifier", attribute(Tag(0x0020, 0x0100))},
+            {"TemporalPositionIndex", attribute.binary<0x0020, 0x9128>(content)},
+            {"StackID", attribute(Tag(0x0020, 0x9056), content)},
+            {"EchoNumbers", attribute(Tag(0x0018, 0x0086))},
+            {"EchoTime", attribute(Tag(0x0018, 0x0081))},
+            {"EffectiveEchoTime", attribute.binary<0x0018, 0x9082>(Tag(0x0018, 0x9114))},
+            {"InversionTime", attribute(Tag(0x0018, 0x0082))},
+            {"TriggerTime", attribute(Tag(0x0018, 0x1060))},
+            {"NominalPercentageOfCardiacPhase", attribute(Tag(0x0020, 0x9241))},
+            {"DiffusionBValue", attribute.binary<0x0018, 0x9087>(Tag(0x0018, 0x9117))},
+            {"ImageType", attribute(Tag(0x0008, 0x0008))},
+            {"FrameType", attribute(Tag(0x0008, 0x9007), Tag(0x0018, 0x9226))},
+            {"AcquisitionTime", attribute(Tag(0x0008, 0x0032))},
+            {"AcquisitionDateTime", attribute(Tag(0x0008, 0x002a))},
+            {"ContentTime", attribute(Tag(0x0008, 0x0033))},
+            {"their files", attribute.own ? file.filename().string() : ""}};
 }
 
 // The numbers of 16 bits that an attribute holds.
@@ -183,7 +183,7 @@ struct LookUpTable {
     double first = 0;  // the stored number that its first value is for
     std::vector<float> values;
 
-    // Numbers below the first get its value, those above the last get that one's.
+    // Numbers beyond either end get the value at that end.
     float operator()(double stored) const {
         return values[std::size_t(std::clamp(stored - first, 0.0, double(values.size() - 1)))];
     }
@@ -191,7 +191,7 @@ struct LookUpTable {
 
 const Tag tables(0x0028, 0x3000);
 
-// Without values if there is none, or if it is not whole.
+// Without values if there is none, or if it is incomplete.
 LookUpTable table_of(const DataSet& set, bool has_sign) {
     const DataSet* lut = item(set, tables, 0);
     if (!lut) return {};
@@ -220,8 +220,8 @@ double value_of(double stored, const Slice& slice, const LookUpTable& table) {
     return table.values.empty() ? stored * slice.slope + slice.intercept : double(table(stored));
 }
 
-// Numbers of a slice that are written wrongly.
-std::vector<std::string> doubts_of(const Attributes& says) {
+// Notes on a slice's numbers that are malformed.
+std::vector<std::string> doubts_of(const Attributes& attribute) {
     const struct {
         const char* name;
         Tag tag, group;
@@ -236,43 +236,43 @@ std::vector<std::string> doubts_of(const Attributes& says) {
                {"RescaleIntercept", Tag(0x0028, 0x1052), value_transformation, 1}};
     std::vector<std::string> doubts;
     for (const auto& [name, tag, group, count] : all) {
-        const std::string said = says(tag, group);
-        if (said.empty()) continue;
-        if (numbers(said).size() < count)
+        const std::string value = attribute(tag, group);
+        if (value.empty()) continue;
+        if (numbers(value).size() < count)
             doubts.push_back(fmt::format("its {} cannot be read and is left out", name));
-        else if (said.find(',') != std::string::npos)
+        else if (value.find(',') != std::string::npos)
             doubts.push_back(fmt::format("its {} has decimal commas: they are read as points", name));
     }
     return doubts;
 }
 
-Slice slice_of(const Attributes& says, const Slice& plain, bool has_sign) {
+Slice slice_of(const Attributes& attribute, const Slice& plain, bool has_sign) {
     Slice slice = plain;
-    slice.marks = marks_of(says, plain.file);
-    find_spacing(says, slice);
-    slice.direction = direction_of(says(Tag(0x0020, 0x0037), plane_orientation));
-    const std::string position = says(Tag(0x0020, 0x0032), plane_position);
+    slice.marks = marks_of(attribute, plain.file);
+    find_spacing(attribute, slice);
+    slice.direction = direction_of(attribute(Tag(0x0020, 0x0037), plane_orientation));
+    const std::string position = attribute(Tag(0x0020, 0x0032), plane_position);
     if (const auto n = numbers(position); n.size() == 3) {
         slice.position = dvec3(n[0], n[1], n[2]);
         slice.rounding = last_place(position);
     }
-    slice.location = number(says(Tag(0x0020, 0x1041)));
-    slice.thickness = number(says(Tag(0x0018, 0x0050), pixel_measures)).value_or(0);
-    slice.between = std::abs(number(says(Tag(0x0018, 0x0088), pixel_measures)).value_or(0));
-    if (const auto slope = number(says(Tag(0x0028, 0x1053), value_transformation)); slope && *slope != 0)
+    slice.location = number(attribute(Tag(0x0020, 0x1041)));
+    slice.thickness = number(attribute(Tag(0x0018, 0x0050), pixel_measures)).value_or(0);
+    slice.between = std::abs(number(attribute(Tag(0x0018, 0x0088), pixel_measures)).value_or(0));
+    if (const auto slope = number(attribute(Tag(0x0028, 0x1053), value_transformation)); slope && *slope != 0)
         slice.slope = *slope;
-    if (const auto dose = number(says(Tag(0x3004, 0x000e)))) slice.slope = *dose;
-    slice.intercept = number(says(Tag(0x0028, 0x1052), value_transformation)).value_or(0);
-    slice.doubts = doubts_of(says);
-    if (const auto padding = padding_of(says.file, has_sign)) {
-        const LookUpTable table = table_of(says.file, has_sign);
+    if (const auto dose = number(attribute(Tag(0x3004, 0x000e)))) slice.slope = *dose;
+    slice.intercept = number(attribute(Tag(0x0028, 0x1052), value_transformation)).value_or(0);
+    slice.doubts = doubts_of(attribute);
+    if (const auto padding = padding_of(attribute.file, has_sign)) {
+        const LookUpTable table = table_of(attribute.file, has_sign);
         const double a = value_of(padding->x, slice, table), b = value_of(padding->y, slice, table);
         slice.padding = dvec2(std::min(a, b), std::max(a, b));
     }
     return slice;
 }
 
-// ---- what a file is ----
+// ---- which files have slices ----
 
 Slice troubled(Slice slice, const std::string& trouble, const std::string& remedy) {
     slice.trouble = trouble;
@@ -306,7 +306,7 @@ std::string kind_of(const std::string& uid) {
     return name ? name : uid;
 }
 
-// Why a file whose header is whole gives no slices, or nothing.
+// Why a file with a complete header has no slices; nothing if it may have some.
 std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
     const DataSet& set = file.GetDataSet();
     std::string kind = text(set, Tag(0x0008, 0x0016));
@@ -335,7 +335,7 @@ std::optional<Slice> unusable(const gdcm::File& file, const Slice& plain) {
     return std::nullopt;
 }
 
-// The pictures of one file, of which the i-th lies `offsets[i]` above `first`.
+// The slices of a multi-frame file, of which the i-th lies `offsets[i]` above `first`.
 std::vector<Slice> stacked(Slice plain, dvec3 first, std::span<const double> offsets) {
     std::vector<Slice> all;
     for (std::size_t i = 0; i < offsets.size(); ++i) {
@@ -347,15 +347,15 @@ std::vector<Slice> stacked(Slice plain, dvec3 first, std::span<const double> off
     return all;
 }
 
-// Those of a radiation dose, which says how far each lies above the first. Empty for what is none.
+// The slices of a radiation dose, which states their offsets from the first. Empty for other files.
 std::vector<Slice> dose_slices(const DataSet& set, const Slice& plain, std::size_t frames) {
     const auto offsets = numbers(text(set, Tag(0x3004, 0x000c)));
     if (offsets.size() != frames || offsets[0] != 0 || !plain.position || !plain.direction) return {};
     return stacked(plain, *plain.position, offsets);
 }
 
-// Those of a nuclear medicine tomogram, which says where the first lies, and how far and on which side of it
-// (by the sign) the next. Empty for what is none.
+// The slices of a nuclear medicine tomogram, which states the position of the first and the signed distance
+// of the next. Empty for other files.
 std::vector<Slice> tomogram_slices(const DataSet& set, Slice plain, std::size_t frames) {
     const auto order = words(set, Tag(0x0054, 0x0080));
     const Attributes detector{.file = set, .shared = &set};
@@ -373,12 +373,12 @@ std::vector<Slice> tomogram_slices(const DataSet& set, Slice plain, std::size_t 
 Slice film(const DataSet& set, const Slice& plain, std::size_t frames) {
     const bool nuclear = text(set, Tag(0x0008, 0x0060)) == "NM";
     return troubled(plain,
-                    fmt::format("{} {} in one file that does not say where each lies{}", frames,
+                    fmt::format("{} {} in one file that does not state their positions{}", frames,
                                 nuclear ? "nuclear medicine frames" : "pictures", nuclear ? "" : " (a film)"),
                     nuclear ? "convert it with dcm2niix" : "give a series of slices");
 }
 
-// The pictures of a file whose header GDCM has read.
+// The slices of a file whose header GDCM has read.
 std::vector<Slice> slices_of(const gdcm::File& file, Slice plain, double left) {
     const DataSet& set = file.GetDataSet();
     if (const auto slice = unusable(file, plain)) return {*slice};
@@ -390,7 +390,7 @@ std::vector<Slice> slices_of(const gdcm::File& file, Slice plain, double left) {
     const std::size_t frames = sizes.size() > 2 ? std::max(sizes[2], 1u) : 1;
     const gdcm::TransferSyntax& syntax = file.GetHeader().GetDataSetTransferSyntax();
     const double promised = double(sizes[0]) * sizes[1] * double(frames) * format.GetPixelSize();
-    // GDCM pads a file that is too short. The length of a compressed one says nothing.
+    // GDCM pads a truncated file. The length of a compressed one cannot be checked.
     if (!syntax.IsEncapsulated() && syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian &&
         !(promised <= left))
         return {damaged(plain)};
@@ -419,7 +419,7 @@ std::vector<Slice> scan_file(const std::filesystem::path& file) try {
     const DataSet& set = reader.GetFile().GetDataSet();
     Slice plain = of_file(file);
     const std::string uid = text(set, Tag(0x0020, 0x000e)), patient = text(set, Tag(0x0010, 0x0020));
-    // A name may be spelled in two ways, so it counts only where nothing else tells patients apart.
+    // A name may be spelled in two ways, so it counts only if nothing else distinguishes patients.
     plain.series = uid + "/" + patient + "/" + (uid.empty() ? text(set, Tag(0x0010, 0x0010)) : "");
     plain.study = text(set, Tag(0x0020, 0x000d)) + "/" + patient;
     plain.description = text(set, Tag(0x0008, 0x103e));
@@ -429,7 +429,8 @@ std::vector<Slice> scan_file(const std::filesystem::path& file) try {
     if (readable && plain.pixels_at >= size) {
         if (const auto slice = unusable(reader.GetFile(), plain)) return {*slice};
         plain.damaged = true;
-        return {troubled(plain, "no pixels (it is not an image, or it is truncated)", "name a file of slices")};
+        return {
+            troubled(plain, "no pixels (it is not an image, or it is truncated)", "name a file of slices")};
     }
     const std::string syntax = text(reader.GetFile().GetHeader(), Tag(0x0002, 0x0010));
     if (!syntax.empty() && gdcm::TransferSyntax::GetTSType(syntax.c_str()) == gdcm::TransferSyntax::TS_END)
@@ -444,7 +445,7 @@ std::vector<Slice> scan_file(const std::filesystem::path& file) try {
 
 // ---- between two processes ----
 
-// Each field of a slice with its name, but for its file, which is known by its number.
+// Visits each field of a slice with its name, but for its file, of which only the index is sent.
 template <class AnySlice, class Visit>
 void for_each_field(AnySlice& slice, const Visit& visit) {
     visit("frame", slice.frame);
@@ -479,7 +480,7 @@ auto span_of(T& value) {
     return std::span(first, sizeof value / sizeof *first);
 }
 
-// What may be lacking is null then, and a vector or a matrix is a list of its numbers.
+// An empty optional is null; a vector or a matrix is a list of its numbers.
 template <class T>
 Json json_of(const T& value) {
     if constexpr (requires { value.has_value(); }) {
@@ -515,7 +516,7 @@ Slice slice_from(const Json& json, const std::vector<std::filesystem::path>& fil
     return slice;
 }
 
-// Whether a process of GDCM's ended as it should not, and not for want of what this one needs to start it.
+// Whether GDCM's process failed, rather than this one to start it.
 bool is_of_gdcm(const Error& error) { return std::string_view(error.what()).starts_with("GDCM "); }
 
 // If GDCM crashes on one of them, each half is scanned separately, until the file is found (bisection).
@@ -552,7 +553,7 @@ void scan(const std::vector<std::filesystem::path>& files, std::vector<Slice>& a
     refuse(why.trouble, path, why.remedy);
 }
 
-// A file's pixels, all its pictures.
+// The pixels of all frames of a file.
 struct Pixels {
     std::filesystem::path file;
     std::vector<char> bytes;
@@ -579,7 +580,7 @@ Pixels read_picture(const std::filesystem::path& file) {
     return picture;
 }
 
-// As many bits as are in use, with their sign.
+// Writes the bits that are in use (BitsStored), with their sign.
 template <class T>
 void write_values(const Pixels& picture, const Slice& slice, std::FILE* out) {
     const std::size_t count = std::size_t(slice.size.x) * std::size_t(slice.size.y);
@@ -637,7 +638,7 @@ Written pixels_of(std::span<const Slice> slices, const std::filesystem::path& pa
         largest = std::max(largest, size);
         values += std::size_t(slice.size.x) * std::size_t(slice.size.y);
     }
-    constexpr double packed = 10;  // times smaller is a compressed slice
+    constexpr double packed = 10;  // the compression ratio that is allowed for
     const Allowance allowance{.seconds = 15 + packed * std::max(all, largest) / 20e6,
                               .bytes = (std::size_t(1) << 28) + std::size_t(4 * packed * largest),
                               .output = values * sizeof(float)};

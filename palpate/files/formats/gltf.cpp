@@ -68,13 +68,13 @@ class Gltf {
             if (!name.is_string()) broken("a required extension without a name");
             const std::string_view text = name.get_ref<const std::string&>();
             if (!may_be_required(text))
-                file_.source().broken("a glTF that requires the extension " +
-                                          in_quotes(text) + ", which is not read,",
-                                      "export it without that");
+                file_.source().broken(
+                    "a glTF that requires the extension " + in_quotes(text) + ", which is not read,",
+                    "export it without that");
         }
     }
 
-    // N numbers of a node or of a texture; what is given where there are none.
+    // N numbers of a node or of a texture; `values` if it has none.
     template <std::size_t N>
     std::array<double, N> numbers(const Json& object, std::string_view name,
                                   std::array<double, N> values) const {
@@ -97,15 +97,15 @@ class Gltf {
         return {turn_by({a, b, c, w}) * scale_by({u, v, t}), {x, y, z}};
     }
 
-    // The nodes that a list of an object's names, as numbers.
+    // The indices of nodes in one of an object's lists.
     std::vector<std::size_t> nodes_in(const Json& object, std::string_view name) const {
         std::vector<std::size_t> nodes;
         for (const Json& node : file_.list_of(object, name)) nodes.push_back(file_.number_in("nodes", node));
         return nodes;
     }
 
-    // Goes through these nodes and those below them, each once and in the order in which they stand; but not
-    // to what hangs on one for which `visit` returns false.
+    // Visits these nodes and their descendants, each once and in order, but not the descendants of a node for
+    // which `visit` returns false.
     template <class Visit>
     void walk(std::vector<std::size_t> left, const Visit& visit) const {
         std::ranges::reverse(left);
@@ -122,18 +122,18 @@ class Gltf {
         }
     }
 
-    // Where each node stands in the world.
+    // Computes the world transforms of all nodes.
     void place_nodes() {
         const Json& nodes = file_.list("nodes");
-        std::vector<bool> hangs(nodes.size());
+        std::vector<bool> has_parent(nodes.size());
         for (const Json& node : nodes)
             for (std::size_t child : nodes_in(node, "children")) {
-                if (hangs[child]) broken(fmt::format("node {}, which has two parents,", child));
-                hangs[child] = true;
+                if (has_parent[child]) broken(fmt::format("node {}, which has two parents,", child));
+                has_parent[child] = true;
             }
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             worlds_.push_back(own_place(nodes[i]));
-            if (!hangs[i]) tops_.push_back(i);
+            if (!has_parent[i]) tops_.push_back(i);
         }
         std::size_t placed = 0;
         walk(tops_, [&](std::size_t i, const Json& node) {
@@ -144,7 +144,7 @@ class Gltf {
         if (placed < nodes.size()) broken("a cycle of nodes");
     }
 
-    // What the file shows: the nodes of its scene, or all.
+    // The roots of the file's default scene, or of another scene with a mesh, or of all nodes.
     std::vector<std::size_t> roots() {
         const Json& scenes = file_.list("scenes");
         if (scenes.empty()) return tops_;
@@ -164,7 +164,7 @@ class Gltf {
         return shown;
     }
 
-    // Whether a mesh hangs on one of these nodes or below.
+    // Whether one of these nodes or their descendants has a mesh.
     bool shows_mesh(const std::vector<std::size_t>& roots) const {
         bool found = false;
         walk(roots, [&](std::size_t, const Json& node) {
@@ -174,7 +174,7 @@ class Gltf {
         return found;
     }
 
-    // Where the copies of what hangs on a node stand, as seen from there.
+    // The transforms of a node's instances, relative to the node.
     std::vector<Place> instances(const Json& node) {
         const Json& extra = extension(node, instancing);
         if (extra.is_null()) return {Place()};
@@ -207,7 +207,7 @@ class Gltf {
         bool mirrored = false;
     };
 
-    // What it costs to look at a primitive once more, for each node and each instance that has it.
+    // The charge for visiting a primitive again, for each node and each instance that has it.
     static constexpr std::size_t bytes_a_visit = 100, bytes_a_letter = 16;
 
     void add_meshes() {
@@ -251,13 +251,12 @@ class Gltf {
         };
         add(field(primitive, "attributes"));
         for (const Json& target : file_.list_of(primitive, "targets")) add(target);
-        const auto [set, place] = picture_of(primitive);
+        const auto [set, place] = texture_of(primitive);
         return text + fmt::format("{} {} {} {} {} {} {}", set, place.turn[0].x, place.turn[0].y,
                                   place.turn[1].x, place.turn[1].y, place.move.x, place.move.y);
     }
 
-    // Where the joints of a node's skin carry what hangs on them; empty if it has none. The node itself then
-    // places nothing.
+    // The transforms by the joints of a node's skin, which replace that of the node; empty if it has no skin.
     std::vector<Place> bones_of(const Json& node) {
         if (field(node, "skin").is_null()) return {};
         const Json& skin = file_.entry("skins", field(node, "skin"));
@@ -282,7 +281,7 @@ class Gltf {
         const std::size_t count = positions.size();
         if (draft_.positions.size() + count > ~Index(0)) broken("more than 2^32 vertices");
         std::vector<dvec3> normals = at_rest<dvec3>(primitive, "NORMAL", weights, count);
-        const auto [set, in_picture] = picture_of(primitive);
+        const auto [set, in_texture] = texture_of(primitive);
         std::vector<dvec2> uvs = at_rest<dvec2>(primitive, set, weights, count);
         if (too_far_for_floats(positions)) draft_.single = true;
 
@@ -296,15 +295,15 @@ class Gltf {
             if (!normals.empty()) draft_.normals.push_back(place.normal(normals[i]));
         }
         for (dvec2 uv : uvs) {
-            const dvec3 turned = in_picture.of({uv, 0});
-            draft_.uvs.push_back({turned.x, 1 - turned.y});  // glTF counts down
+            const dvec3 placed = in_texture.of({uv, 0});
+            draft_.uvs.push_back({placed.x, 1 - placed.y});  // glTF's v points down
         }
         has_normals_ = has_normals_ && normals.size() == count;
         has_uvs_ = has_uvs_ && uvs.size() == count;
         return added;
     }
 
-    // An attribute with what morph targets add to it; nothing if there is none.
+    // An attribute with its morph targets added by weight; empty if it is missing.
     template <class T>
     std::vector<T> at_rest(const Json& primitive, const std::string& name, const Json& weights,
                            std::size_t count) {
@@ -325,7 +324,7 @@ class Gltf {
         return values;
     }
 
-    // Where the joints carry each vertex; the first of them, one that is on none.
+    // The skinning transform of each vertex; that of the first joint for a vertex without joints.
     std::vector<Place> carry(const Json& attributes, const std::vector<Place>& bones, std::size_t count) {
         file_.spend(count, sizeof(Place));
         MeanPlaces places(count);
@@ -346,13 +345,13 @@ class Gltf {
         return std::move(places).take(bones[0]);
     }
 
-    // Which texture coordinates a primitive's picture takes, and where they are turned to.
-    struct Picture {
+    // Which texture coordinates a primitive's texture takes, and their transform.
+    struct Texture {
         std::string set = "TEXCOORD_0";
         Place place{};
     };
 
-    Picture picture_of(const Json& primitive) const {
+    Texture texture_of(const Json& primitive) const {
         if (field(primitive, "material").is_null()) return {};
         const Json& material = file_.entry("materials", field(primitive, "material"));
         const Json& texture = field(field(material, "pbrMetallicRoughness"), "baseColorTexture");
@@ -403,20 +402,20 @@ class Gltf {
         file_.spend(mode == triangles ? n : 3 * n, 2 * sizeof(Index));
         switch (mode) {
             case 0:  // points
-            case 2:  // lines in a ring
+            case 2:  // a line loop
                 draft_.loose += n;
                 break;
             case 1:  // lines
                 draft_.loose += n / 2;
                 break;
-            case 3:  // lines in a row
+            case 3:  // a line strip
                 draft_.loose += n > 0 ? n - 1 : 0;
                 break;
             case triangles:
                 for (std::size_t i = 0; i + 2 < n; i += 3) add(i, i + 1, i + 2);
                 unfinished_ += n % 3;
                 break;
-            case 5:  // a strip, whose repeated corners only lead to its next part
+            case 5:  // a strip; degenerate triangles only connect its parts
                 for (std::size_t i = 0; i + 2 < n; ++i) add_unless_flat(i, i + 1 + i % 2, i + 2 - i % 2);
                 break;
             case 6:  // a fan
@@ -427,7 +426,7 @@ class Gltf {
         }
     }
 
-    // What some parts lack is left out of all, and what is left out is told.
+    // Drops attributes that some parts lack, and notes everything that was left out.
     void leave_out() {
         const auto note = [&](std::size_t count, fmt::format_string<std::string> text, const char* one) {
             if (count > 0) draft_.notes.push_back(fmt::format(text, counted(count, one)));
@@ -443,7 +442,7 @@ class Gltf {
 
     GltfFile file_;
     std::vector<Place> worlds_;                 // of nodes
-    std::vector<std::size_t> tops_;             // nodes that hang on no other
+    std::vector<std::size_t> tops_;             // nodes without a parent
     bool has_normals_ = true, has_uvs_ = true;  // all parts so far
     std::size_t unfinished_ = 0, uncopied_ = 0, hidden_ = 0;
     Draft draft_;

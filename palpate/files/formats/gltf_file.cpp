@@ -35,7 +35,7 @@ std::size_t components_of(std::string_view shape) {  // one that is known
 template <class Vector>
 constexpr std::string_view shape_of = shapes[Vector::length() - 1].name;
 
-// Numbers of T's kind, one behind the other, as T.
+// Consecutive numbers as vectors T.
 template <class T>
 std::vector<T> packed(const std::vector<double>& numbers) {
     std::vector<T> values(numbers.size() * sizeof(double) / sizeof(T));
@@ -66,7 +66,7 @@ std::string text_of(const nlohmann::json& object, std::string_view name, std::st
     return value.is_string() ? value.get<std::string>() : std::string(fallback);
 }
 
-// Undoes what a filter of meshopt's did to vertices before they were packed. False for one that is unknown.
+// Reverses a filter that meshopt applied to vertices before compression. False if the filter is unknown.
 bool undo_filter(std::string_view filter, std::string& vertices, std::size_t stride) {
     const std::size_t count = vertices.size() / stride;
     if (filter == "OCTAHEDRAL" && (stride == 4 || stride == 8))
@@ -170,7 +170,7 @@ std::string_view GltfFile::buffer(std::size_t number) {
     return known->second;
 }
 
-// A file adds to the budget once, however many buffers name it; each of them has its bytes anew.
+// A file adds to the budget once, however many buffers name it; each buffer has its own copy.
 std::string GltfFile::outside(std::string_view uri) {
     const auto file = source_.beside(uri);
     if (!file)
@@ -183,7 +183,7 @@ std::string GltfFile::outside(std::string_view uri) {
     return text;
 }
 
-// What an offset and a length cut out of a buffer.
+// The part of a buffer with this offset and length.
 std::string_view GltfFile::cut(const Json& of) {
     const std::string_view bytes = buffer(number_in("buffers", field(of, "buffer")));
     const std::size_t offset = whole(field(of, "byteOffset"), "an offset", 0),
@@ -205,7 +205,7 @@ GltfFile::View GltfFile::view(const Json& which) {
     return {known->second, stride};
 }
 
-// meshoptimizer's decoders never write more than they are told.
+// meshoptimizer's decoders never write more than the given size.
 std::string GltfFile::unpack(const Json& packing, std::size_t stride) {
     const std::string_view bytes = cut(packing);
     const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
@@ -271,7 +271,7 @@ struct GltfFile::Kind {
     int number;  // glTF's
     std::size_t bytes;
     double (*load)(const char* from);
-    double most;  // what stands for 1 where numbers are normalised
+    double most;  // represents 1 if numbers are normalised
 };
 
 const GltfFile::Kind& GltfFile::kind_of(const Json& number) const {
@@ -342,7 +342,7 @@ template std::vector<dvec2> GltfFile::vectors_of(const Json& accessor);
 template std::vector<dvec3> GltfFile::vectors_of(const Json& accessor);
 template std::vector<glm::dvec4> GltfFile::vectors_of(const Json& accessor);
 
-// A sparse accessor gives some of its entries anew.
+// A sparse accessor replaces some of its entries.
 void GltfFile::replace(std::vector<double>& numbers, const Json& sparse, const Kind& kind,
                        std::size_t components) {
     const std::size_t count = whole(field(sparse, "count"), "a count", 0);

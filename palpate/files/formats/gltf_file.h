@@ -17,7 +17,7 @@ namespace palpate {
 /// A field of an object, or null.
 const nlohmann::json& field(const nlohmann::json& object, std::string_view name);
 
-/// What an extension says of an object, or null.
+/// The data of an extension in an object, or null.
 const nlohmann::json& extension(const nlohmann::json& object, std::string_view name);
 
 /// A glTF file: its JSON, and the numbers of its accessors, decompressed and dequantised. gltf.cpp makes a
@@ -54,7 +54,7 @@ class GltfFile {
 
     // --- numbers ---
 
-    /// The extensions that pack numbers.
+    /// The extensions that compress numbers.
     static constexpr std::string_view draco = "KHR_draco_mesh_compression",
                                       meshopt = "EXT_meshopt_compression";
 

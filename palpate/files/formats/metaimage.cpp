@@ -25,7 +25,7 @@ Number metaimage_number(std::string type, const std::filesystem::path& path) {
     refuse("voxels of the type " + in_quotes(type) + ", which is not read,", path, "convert it to numbers");
 }
 
-// What the first of several names says that a file has.
+// The numbers of the first of these fields that the file has.
 std::vector<double> first_of(const Fields& fields, std::initializer_list<const char*> names,
                              std::size_t least, const std::filesystem::path& path) {
     for (const char* name : names)
@@ -68,15 +68,15 @@ Grid place_of(const Fields& fields, ivec3 dims, std::size_t count, std::vector<s
     return checked_grid(dims, steps, origin, path);
 }
 
-bool says_yes(const Fields& fields, const char* name) { return fields[name].find_first_of("Tt1") == 0; }
+bool is_true(const Fields& fields, const char* name) { return fields[name].find_first_of("Tt1") == 0; }
 
 Layout layout_of(const Fields& fields, const std::filesystem::path& path) {
     Layout layout;
     layout.number = metaimage_number(fields["elementtype"], path);
-    layout.packing = says_yes(fields, "compresseddata")                            ? Packing::gzip
-                     : fields.has("binarydata") && !says_yes(fields, "binarydata") ? Packing::text
-                                                                                   : Packing::none;
-    layout.big_endian = says_yes(fields, "binarydatabyteordermsb") || says_yes(fields, "elementbyteordermsb");
+    layout.packing = is_true(fields, "compresseddata")                            ? Packing::gzip
+                     : fields.has("binarydata") && !is_true(fields, "binarydata") ? Packing::text
+                                                                                  : Packing::none;
+    layout.big_endian = is_true(fields, "binarydatabyteordermsb") || is_true(fields, "elementbyteordermsb");
     if (const auto slope = fields.numbers("elementtointensityfunctionslope", 1, path);
         !slope.empty() && slope[0] != 0)
         layout.slope = slope[0];

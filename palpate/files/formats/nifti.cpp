@@ -166,7 +166,7 @@ double unit_of(const Header& header) {
     return code == 1 ? 1 : code == 2 ? 1e-3 : code == 3 ? 1e-6 : 0;
 }
 
-// The farthest that a corner lies apart in two grids.
+// The largest distance between corresponding corners of two grids.
 double apart(const Grid& a, const Grid& b) {
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -176,7 +176,7 @@ double apart(const Grid& a, const Grid& b) {
     return farthest;
 }
 
-// Widths of voxels as a quaternion and the spacing alone need them.
+// The spacing, as the qform and files without a form need it.
 dvec3 spacing_of(const Header& header, std::vector<std::string>& notes, const std::filesystem::path& path) {
     dvec3 spacing(header.pixdim[1], header.pixdim[2], header.pixdim[3]);
     for (int i = 0; i < 3; ++i) {
@@ -280,8 +280,8 @@ Layout layout_of(const Header& header, std::size_t voxels, std::vector<std::stri
     return layout;
 }
 
-// How far behind the header's own bytes the voxels of one file begin. Where it says that they begin within
-// the header, they do so right behind it, as for nifti_clib.
+// How many bytes after the header the voxels of one file begin. If the stated offset is within the header,
+// they begin right after it, as in nifti_clib.
 std::int64_t behind_header(const Header& header, std::int64_t offset, std::vector<std::string>& notes) {
     const auto size = std::int64_t(header.size);
     if (offset < size)
@@ -291,7 +291,7 @@ std::int64_t behind_header(const Header& header, std::int64_t offset, std::vecto
     return std::max<std::int64_t>(offset - size, 0);
 }
 
-// The other file of a pair: the same name with another ending, with .gz behind it or not.
+// The other file of a pair: the same name with another extension, with or without a final .gz.
 std::filesystem::path partner(const std::filesystem::path& path, std::string ending) {
     std::filesystem::path stem = path;
     if (lower_name(stem).ends_with(".gz")) stem.replace_extension();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// What the header says of one axis of the array.
+// The header's fields for one axis of the array.
 struct Axis {
     double size = 0, spacing = unknown, low = unknown, high = unknown;
     std::string kind, centre, unit;
@@ -44,7 +44,7 @@ std::vector<std::string> quoted(const std::string& text) {
     return all;
 }
 
-// (1,0,0) none (0,1,0); nothing for what is none.
+// (1,0,0) none (0,1,0), with nothing for "none".
 std::vector<std::optional<dvec3>> vectors(const std::string& text, const std::filesystem::path& path) {
     std::vector<std::optional<dvec3>> all;
     for (std::size_t at = text.find_first_not_of(' '); at != std::string::npos;
@@ -86,7 +86,7 @@ std::vector<Axis> axes_of(const Fields& fields, const std::filesystem::path& pat
     return axes;
 }
 
-// Which axes of the array are axes of space.
+// Which axes of the array are spatial.
 std::vector<std::size_t> in_space(const Fields& fields, const std::vector<Axis>& axes) {
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -98,7 +98,7 @@ std::vector<std::size_t> in_space(const Fields& fields, const std::vector<Axis>&
     return all;
 }
 
-// The one axis that is not in space and wider than one, if there is one.
+// Sets the layout to keep the first entry along the one axis that is not spatial, if there is one.
 void leave_out(const std::vector<Axis>& axes, const std::vector<std::size_t>& space, Layout& layout,
                std::vector<std::string>& notes, const std::filesystem::path& path) {
     double run = 1;

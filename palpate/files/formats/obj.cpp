@@ -36,7 +36,7 @@ class Obj {
             std::string_view words = line();
             const std::string_view key = word(words, space);
             if (key == "v") positions_.push_back(position(words));
-            if (key == "vt") uvs_.push_back(texture_place(words));
+            if (key == "vt") uvs_.push_back(texture_coordinates(words));
             if (key == "vn") normals_.push_back(normal(words));
             if (key == "f" || key == "fo") add_face(words);
             if (key == "l" || key == "p") ++loose_;
@@ -76,8 +76,8 @@ class Obj {
         return v;
     }
 
-    // A second number may be missing, and a third means nothing to a picture.
-    static dvec2 texture_place(std::string_view words) {
+    // A second number may be missing, and a third is not used.
+    static dvec2 texture_coordinates(std::string_view words) {
         const double u = any_number(words);
         std::string_view ahead = words;
         return {u, word(ahead, space).empty() ? 0 : any_number(words)};
@@ -104,7 +104,7 @@ class Obj {
         if (all_normals_) corner_normals_.resize(corners_.size());
     }
 
-    // OBJ counts from 1, or backwards from the last one so far. An index of nothing becomes `nowhere`.
+    // OBJ counts from 1, or backwards from the last one so far. An invalid index becomes `nowhere`.
     static constexpr Index nowhere = ~Index(0);
     static Index index(std::string_view text, std::size_t so_far) {
         const double number = spelled(text).value_or(0);
@@ -130,7 +130,8 @@ class Obj {
         return astray == 0 && !numbers.empty();
     }
 
-    // What the faces use, in that order, one vertex for each position, place in the texture and normal.
+    // One vertex for each combination of position, texture coordinates and normal that faces use, in that
+    // order.
     Draft joined() const {
         Draft draft;
         const bool uvs = all_uvs_ && all_there(corner_uvs_, uvs_.size(), "texture coordinates", draft);

@@ -183,8 +183,8 @@ class Ply {
         strip_.clear();
     }
 
-    // Each corner makes a triangle with the two before it, every second of them the other way round; -1
-    // begins anew.
+    // Each corner makes a triangle with the two before it, with alternating orientation; -1 begins a new
+    // strip.
     void add_to_strip(double value) {
         if (value == -1) return strip_.clear();
         if (!is_whole(value, 0, 0x7fffffffp0)) bad(fmt::format("naming vertex {}", value));
@@ -192,7 +192,7 @@ class Ply {
         const std::size_t n = strip_.size();
         if (n < 3) return;
         Index a = strip_[n - 3], b = strip_[n - 2], c = strip_[n - 1];
-        if (a == b || b == c || c == a) return;  // it only leads on
+        if (a == b || b == c || c == a) return;  // degenerate: it only continues the strip
         if (n % 2 == 0) std::swap(a, b);
         draft_.corners.insert(draft_.corners.end(), {a, b, c});
         draft_.sizes.push_back(3);

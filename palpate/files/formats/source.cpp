@@ -37,7 +37,7 @@ Source::Source(std::string_view bytes, std::string name, std::filesystem::path f
 
 std::optional<std::filesystem::path> Source::beside(std::string_view uri) const {
     if (folder_.empty()) return {};
-    std::string slashed(uri);  // as Windows does not write them
+    std::string slashed(uri);  // with slashes instead of Windows' backslashes
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     for (const std::string& name : {percent_decoded(uri), std::string(uri), percent_decoded(slashed)}) {
         if (name.empty() || name.find('\0') != std::string::npos || !stays_below(name)) continue;

@@ -26,13 +26,13 @@ std::size_t promised(std::string_view bytes) {
     return count;
 }
 
-// Whether two words are the same but for capitals.
+// Whether two words are equal, ignoring case.
 bool alike(std::string_view a, std::string_view b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](unsigned char c, unsigned char d) { return std::tolower(c) == std::tolower(d); });
 }
 
-// Where a text has some small letters, whatever their size there; npos if it has not.
+// Finds a lower-case word in a text, ignoring case; npos if it is not there.
 std::size_t place_of(std::string_view what, std::string_view text) {
     const auto found = std::search(text.begin(), text.end(), what.begin(), what.end(),
                                    [](unsigned char a, char b) { return std::tolower(a) == b; });
@@ -85,8 +85,8 @@ Draft read_binary(const Source& source) {
 }
 
 // solid NAME, then facets (facet normal X Y Z, outer loop, three times vertex X Y Z, endloop, endfacet), then
-// endsolid NAME; all that perhaps several times, in any capitals, its ends in one word or two. Only the
-// vertices count: a line that begins with another word (a colour, a comment) is read over.
+// endsolid NAME; perhaps several times, in any case, the ends in one word or two. Only the vertices count: a
+// line that begins with another word (a colour, a comment) is ignored.
 class StlText {
  public:
     explicit StlText(Source source) : source_(std::move(source)) {}
@@ -118,7 +118,7 @@ class StlText {
         else if (alike(key, "vertex") && in_loop_)
             add_vertex();
         else if (alike(key, "normal"))
-            pass_numbers();  // faces know their own
+            pass_numbers();  // normals are computed from the corners
         else if (!alike(key, "loop"))
             pass_line(key);
     }
@@ -152,7 +152,7 @@ class StlText {
         for (int k = 0; k < 3 && spelled(word(ahead)); ++k) source_.rest = ahead;
     }
 
-    // The rest of the line, or what of it stands before its first facet.
+    // Skips the rest of the line, or up to its first facet.
     void pass_name() {
         const std::string_view text = source_.rest, line = source_.line();
         if (const std::size_t facet = place_of("facet normal", line); facet != std::string_view::npos)
@@ -170,7 +170,7 @@ class StlText {
     Draft draft_;
     bool in_solid_ = false, in_facet_ = false, in_loop_ = false;
     Index size_ = 0;                        // corners of the face so far
-    std::vector<std::string_view> others_;  // words that begin what is read over
+    std::vector<std::string_view> others_;  // the first words of ignored lines
 };
 
 }  // namespace

@@ -22,10 +22,10 @@ namespace {
 
 constexpr int most_components_deep = 100;
 
-// What an object costs that is put somewhere, beside its vertices and triangles.
+// The charge for each use of an object, besides its vertices and triangles.
 constexpr std::size_t bytes_an_object = 1000;
 
-// Extensions that a file may require: of the others we do not know what they do to the shape.
+// Extensions that a file may require; others may change the shape in unknown ways.
 constexpr std::string_view understood_namespaces[] = {
     "http://schemas.microsoft.com/3dmanufacturing/production/",
     "http://schemas.microsoft.com/3dmanufacturing/material/",
@@ -47,7 +47,7 @@ class Archive {
         }
     }
 
-    /// Unpacked, as it comes, but no more than is allowed.
+    /// Decompresses a file. Throws Error if it has more than `most` bytes.
     std::string read(std::string_view name, std::size_t most) const {
         const std::string plain(name.starts_with('/') ? name.substr(1) : name);
         const zip_int64_t index = zip_name_locate(zip_.get(), plain.c_str(), ZIP_FL_NOCASE);
@@ -62,7 +62,8 @@ class Archive {
             text.append(block, 0, std::size_t(count));
             if (text.size() > most) source_.broken("more in the archive than its size warrants");
         }
-        source_.broken("a damaged or encrypted " + in_quotes(plain) + " in the archive", "get the file again");
+        source_.broken("a damaged or encrypted " + in_quotes(plain) + " in the archive",
+                       "get the file again");
     }
 
     bool has(std::string_view name) const {
@@ -74,7 +75,7 @@ class Archive {
     std::unique_ptr<zip_t, decltype(&zip_discard)> zip_{nullptr, &zip_discard};
 };
 
-// An object is known by the file in which it stands, and its number there.
+// An object is identified by its file and its id there.
 using Name = std::pair<std::string, std::string>;
 
 struct Part {
@@ -96,12 +97,12 @@ class ThreeMf {
     Draft read() {
         root_ = without_slash(find_root());
         read_model(root_);
-        while (!named_.empty()) {  // files that a component or an item names
+        while (!named_.empty()) {  // files to which components or items refer
             const std::string next = *named_.begin();
             named_.erase(named_.begin());
             read_model(next);
         }
-        tell_of_modifiers();
+        note_modifiers();
         if (build_.empty()) build_all();
         for (const Part& item : build_) add(item.object, item.place, 0);
         if (supports_ > 0) draft_.notes.push_back(fmt::format("left out {}", counted(supports_, "support")));
@@ -195,8 +196,8 @@ class ThreeMf {
         });
     }
 
-    // Slicers say in files of their own what is no body but changes one, or how it is printed.
-    void tell_of_modifiers() {
+    // Slicers list in files of their own which parts only modify a body or its printing.
+    void note_modifiers() {
         std::size_t modifiers = 0;
         for (const char* settings : {"Metadata/model_settings.config", "Metadata/Slic3r_PE_model.config"}) {
             if (!archive_.has(settings)) continue;
@@ -239,7 +240,7 @@ class ThreeMf {
         }
     }
 
-    // Twelve numbers: where the axes go, and then the origin.
+    // A transform of twelve numbers: the images of the axes, and then of the origin.
     template <class Bad>
     static Place place(std::string_view text, Bad bad) {
         Place place;
@@ -280,7 +281,7 @@ class ThreeMf {
     Archive archive_;
     Budget budget_;
     std::string root_;
-    std::set<std::string> known_, named_;  // files that are read, and that are to be
+    std::set<std::string> known_, named_;  // files that were read, and that have to be
     std::map<Name, Object> objects_;
     std::vector<Part> build_;
     std::size_t supports_ = 0, beams_ = 0;

@@ -37,32 +37,32 @@ bool is_gzip(const std::filesystem::path& path) {
     return bytes[0] == 0x1f && bytes[1] == 0x8b && bytes[2] == 8;
 }
 
-// What was packed, unpacked as it is read. Its errors are thrown on, so that they can be told apart.
+// A stream that decompresses as it is read. Its exceptions are passed on, so that they can be distinguished.
 std::unique_ptr<Filtered> unpacked(std::istream& in, Packing packing, const std::filesystem::path& file) {
     auto out = std::make_unique<Filtered>();
     const int first = in.peek();
     if (packing == Packing::bzip2) {
-        if (first != 'B') refuse("voxels that are not bzip2, as the header says,", file);
+        if (first != 'B') refuse("voxels that are not bzip2 although the header says so,", file);
         out->push(io::bzip2_decompressor());
     } else if (first == 0x1f) {
         out->push(io::gzip_decompressor());
     } else if ((first & 0x0f) == 8) {
         out->push(io::zlib_decompressor());
     } else {
-        refuse("voxels that are not gzip, as the header says,", file);
+        refuse("voxels that are not gzip although the header says so,", file);
     }
     out->push(in);
     out->exceptions(std::ios::badbit);
     return out;
 }
 
-// Reads on behind the voxels to where a packed file has its checksum, unless that is far.
+// Reads on to the checksum at the end of a compressed file, unless it is far away.
 void read_to_checksum(std::istream& in) {
     std::vector<char> rest(block_size);
     try {
         in.read(rest.data(), std::streamsize(rest.size()));
     } catch (const io::gzip_error& error) {
-        if (error.error() != io::gzip::bad_header) throw;  // something else stands behind a whole gzip
+        if (error.error() != io::gzip::bad_header) throw;  // other data follow a complete gzip
     }
 }
 
@@ -76,16 +76,16 @@ void skip_lines(std::istream& in, std::int64_t lines) {
     for (; lines > 0 && in; --lines) in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
 }
 
-// So that so many bytes are left.
+// Skips all but the last `bytes`.
 void skip_to_last(std::istream& in, double bytes, const std::filesystem::path& file) {
     in.seekg(0, std::ios::end);
     const double all = double(in.tellg());
-    if (!in || all < 0) refuse("voxels at the end of a packed file", file, "unpack it first");
+    if (!in || all < 0) refuse("voxels at the end of a compressed file", file, "decompress it first");
     if (bytes > all) refuse_truncated(all, bytes, "bytes", file);
     in.seekg(std::streamoff(all - bytes));
 }
 
-// Pairs of digits, as bytes; how many there are.
+// Decodes pairs of hexadecimal digits; returns the number of bytes.
 std::size_t read_hex(std::istream& in, char* to, std::size_t most, const std::filesystem::path& file) {
     std::size_t digits = 0;
     for (char c; digits < 2 * most && in.get(c);) {
@@ -198,7 +198,7 @@ void Voxels::take_text(std::istream& in, const std::filesystem::path& file) {
     }
 }
 
-// At most half as much again as there is already, so that nothing is allocated for what is not there.
+// Grows by at most half of the present size, so that nothing is allocated for what is not there.
 void Voxels::make_room(std::size_t more) {
     const std::size_t needed = values_.size() + more;
     if (needed > values_.capacity()) values_.reserve(std::min(layout_.voxels, needed + needed / 2));

@@ -32,7 +32,7 @@ using Numbers = std::vector<double>;
 
 using Rotation = std::array<double, 4>;  // an axis and an angle
 
-// The fields of a Transform; what they are where it does not say.
+// The fields of a Transform, with their defaults.
 struct Placement {
     dvec3 center{0}, scale{1}, translation{0};
     Rotation rotation{0, 0, 1, 0}, scale_orientation{0, 0, 1, 0};
@@ -55,9 +55,9 @@ bool is_in(std::span<const std::string_view> names, std::string_view name) {
     return std::ranges::count(names, name) > 0;
 }
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // a place in no texture
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // a missing texture coordinate
 
-// Corners in runs that -1 ends, cut into faces: triangles, or what the set is of.
+// Splits runs of corners, each ended by -1, into the faces of a set: triangles or quads.
 Numbers as_faces(std::string_view set, const Numbers& runs) {
     const bool strip = set.ends_with("StripSet"), fan = set.ends_with("FanSet");
     const std::size_t each = set.ends_with("QuadSet") ? 4 : 3;
@@ -82,7 +82,7 @@ Numbers as_faces(std::string_view set, const Numbers& runs) {
     return faces;
 }
 
-// How much of the draft there was at some time.
+// The size of the draft at some point.
 struct Mark {
     std::size_t positions, corners, sizes;
 };
@@ -99,8 +99,8 @@ class Vrml {
         if (has_header) read_header();
         while (!ahead().empty())
             if (!skip_statement(ahead())) node();
-        tell_of_others();
-        tell_of_textures();
+        note_others();
+        note_textures();
         return std::move(draft_);
     }
 
@@ -111,7 +111,7 @@ class Vrml {
             source_.broken("no VRML 2 header");
     }
 
-    void tell_of_others() {
+    void note_others() {
         std::vector<std::string> left_out;
         if (!others_.empty())
             left_out.push_back(fmt::format("shapes that are not read: {}", fmt::join(others_, " ")));
@@ -123,11 +123,11 @@ class Vrml {
         for (const std::string& what : left_out) draft_.notes.push_back("left out " + what);
     }
 
-    // They are kept where all parts have them.
-    void tell_of_textures() {
+    // Texture coordinates are kept if all parts have them.
+    void note_textures() {
         if (astray_ > 0)
-            draft_.notes.push_back(fmt::format(
-                "left the texture coordinates out: {} corners refer to missing ones", astray_));
+            draft_.notes.push_back(
+                fmt::format("left the texture coordinates out: {} corners refer to missing ones", astray_));
         const auto missing = [](dvec2 uv) { return std::isnan(uv.x); };
         const auto without = std::ranges::count_if(draft_.uvs, missing);
         if (astray_ == 0 && without > 0 && without < std::ssize(draft_.uvs))
@@ -137,8 +137,8 @@ class Vrml {
 
     // --- words ---
 
-    // The next word, left where it is: a bracket, a text in quotes, or what runs up to a space or one of
-    // those.
+    // The next word, without consuming it: a bracket, a string in quotes, or everything up to a space or one
+    // of those.
     std::string_view ahead() {
         std::string_view& rest = source_.rest;
         for (;;) {
@@ -178,7 +178,7 @@ class Vrml {
                (!word.empty() && std::string_view("0123456789+-.\"").find(word[0]) != std::string_view::npos);
     }
 
-    // All numbers of a list, or the few that stand without brackets.
+    // All numbers of a list, or a few without brackets.
     Numbers numbers() {
         Numbers found;
         const bool list = take("[");
@@ -222,7 +222,7 @@ class Vrml {
         return {x, y, z};
     }
 
-    // Whatever an unknown field holds. Its nodes are read, because they may have names, and left out again.
+    // Skips the value of an unknown field. Its nodes are read, because they may have names, and then removed.
     // Returns how many faces they had.
     std::size_t skip_value() {
         const Mark before = mark();
@@ -253,7 +253,7 @@ class Vrml {
 
     // --- nodes ---
 
-    // ROUTE node.event TO node.event says nothing of a surface; a PROTO could say anything.
+    // A ROUTE (node.event TO node.event) does not affect a surface; a PROTO could do anything.
     bool skip_statement(std::string_view word) {
         if (word == "PROTO" || word == "EXTERNPROTO")
             source_.broken("a PROTO, a user-defined node,", "convert it with another program");
@@ -301,7 +301,7 @@ class Vrml {
         --depth_;
     }
 
-    // Of all nodes of this name, the last that ended before.
+    // USE: reads again the last node of this name that ended before.
     void repeat(std::string_view name) {
         const std::map<std::size_t, std::size_t>& known = defined_[name];
         const auto after = known.upper_bound(position());
@@ -346,7 +346,7 @@ class Vrml {
         if (visible == std::vector{false}) hidden_ += remove(start, mark());
     }
 
-    // `known` reads the fields that it knows, and says so.
+    // known(field) reads a field and returns true, or returns false if it does not know it.
     template <class F>
     void read_fields(F known) {
         for (std::string_view field = ahead(); !take("}"); field = ahead()) {
@@ -385,7 +385,7 @@ class Vrml {
         if (!ccw) turn_over(start);
     }
 
-    // All points one after the other, in runs of so many.
+    // The indices of all points in order, in runs of these lengths.
     Numbers in_order(std::size_t points, const Numbers& counts) const {
         Numbers runs;
         std::size_t run = 0, left = counts.empty() ? points : 0;
@@ -402,7 +402,7 @@ class Vrml {
         return runs;
     }
 
-    // `uv_indices` stand beside `indices`; without them each point has one place in the texture.
+    // `uv_indices` are parallel to `indices`; without them each point has one texture coordinate.
     void add_faces(const Numbers& points, Numbers indices, const Numbers& uvs, const Numbers& uv_indices) {
         const std::size_t count = points.size() / 3, first = draft_.positions.size();
         const bool by_corner = !uvs.empty() && !uv_indices.empty();
@@ -420,7 +420,8 @@ class Vrml {
         if (!by_corner)
             for (std::size_t i = 0; i < count; ++i)
                 draft_.positions.push_back(point(i)), draft_.uvs.push_back(uv(double(i)));
-        std::map<std::pair<double, double>, Index> known;  // a point and a place in the texture
+        std::map<std::pair<double, double>, Index>
+            known;              // by the indices of a point and a texture coordinate
         indices.push_back(-1);  // which ends a face, and may be left out after the last
         Index size = 0;
         for (std::size_t i = 0; i < indices.size(); ++i) {
@@ -479,7 +480,7 @@ class Vrml {
         draft_.uvs.resize(draft_.positions.size(), dvec2(nothing));
     }
 
-    // Counts what is more than its text.
+    // Limits the number of solids, which are far larger than their text.
     void build(std::size_t solids) {
         if (solids > may_build_) source_.broken("too many solids", "convert it to triangles");
         may_build_ -= solids;
@@ -604,17 +605,17 @@ class Vrml {
         if (chosen > 0) remove(start, ends[chosen - 1]);
     }
 
-    // --- what has been read ---
+    // --- the draft so far ---
 
     Mark mark() const { return {draft_.positions.size(), draft_.corners.size(), draft_.sizes.size()}; }
 
-    // Takes out what lies between two marks. Returns how many faces that were.
+    // Removes what lies between two marks. Returns the number of faces.
     std::size_t remove(Mark from, Mark to) {
         auto cut = [](auto& list, std::size_t a, std::size_t b) {
             list.erase(list.begin() + std::ptrdiff_t(a), list.begin() + std::ptrdiff_t(b));
         };
         cut(draft_.positions, from.positions, to.positions);
-        cut(draft_.uvs, from.positions, to.positions);  // as many
+        cut(draft_.uvs, from.positions, to.positions);  // one for each position
         cut(draft_.corners, from.corners, to.corners);
         cut(draft_.sizes, from.sizes, to.sizes);
         for (std::size_t i = from.corners; i < draft_.corners.size(); ++i)
@@ -630,7 +631,7 @@ class Vrml {
         }
     }
 
-    // Scaled along turned axes, turned, both about the centre, and moved.
+    // Scales along rotated axes and rotates, both about the centre, then translates.
     void place(Mark start, const Placement& by) {
         const dmat3 along = turn(by.scale_orientation);
         const Place all{turn(by.rotation) * along * scale_by(by.scale) * glm::transpose(along),
@@ -644,10 +645,10 @@ class Vrml {
     std::size_t may_repeat_, may_build_;
     int depth_ = 0;
     Draft draft_;
-    double angle_ = 1;                                                        // rad, the unit of angles
-    bool in_geometry_ = false;                                                // of a Shape
-    std::size_t astray_ = 0;                                                  // corners without their texture
-    Numbers points_, uvs_;                                                    // of the last Coordinates
+    double angle_ = 1;          // rad, the unit of angles
+    bool in_geometry_ = false;  // of a Shape
+    std::size_t astray_ = 0;    // corners that refer to missing texture coordinates
+    Numbers points_, uvs_;      // of the last Coordinates
     std::map<std::string_view, std::map<std::size_t, std::size_t>> defined_;  // where nodes end and begin
     std::set<std::string_view> others_;              // kinds of shapes that are left out
     std::map<std::string_view, std::size_t> under_;  // faces that are left out, by the node that has them

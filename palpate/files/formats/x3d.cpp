@@ -19,7 +19,7 @@ constexpr std::string_view number_fields[] = {
     "spine",      "crossSection", "orientation", "whichChoice",   "scaleOrientation", "visible"};
 constexpr std::string_view truth_fields[] = {"ccw", "side", "top", "bottom", "beginCap", "endCap"};
 
-// In which field of its parent a node stands that does not say so itself.
+// The default containerField of a node: the field of its parent in which it is.
 std::string_view field_of(std::string_view node, std::string_view parent) {
     if (node.starts_with("Metadata")) return "metadata";
     if (node == "Coordinate" || node == "CoordinateDouble" || node == "GeoCoordinate") return "coord";
@@ -32,8 +32,7 @@ class X3d {
  public:
     explicit X3d(Source source) : source_(std::move(source)) {}
 
-    // In VRML's words.
-    std::string put_over() {
+    std::string translated() {
         read_xml(
             source_, [&](const XmlElement& element) { return begin(element); }, [&](auto) { end(); });
         if (!is_x3d_) source_.broken("XML that is not X3D");
@@ -57,7 +56,7 @@ class X3d {
             skipped_ = 1;
         } else if (element.name != "X3D" && element.name != "Scene" && !element.name.empty() &&
                    std::isupper(static_cast<unsigned char>(element.name[0]))) {
-            node(element);  // what has a small letter is none
+            node(element);  // names of nodes begin with a capital
         }
         return true;
     }
@@ -72,8 +71,8 @@ class X3d {
         const std::string_view parent =
             open_.size() > 1 ? std::string_view(open_[open_.size() - 2].name) : "";
         if (open_.size() > 1 && open_[open_.size() - 2].node) {
-            const std::string_view said = element["containerField"];
-            text_ += plain(said.empty() ? field_of(element.name, parent) : said) + ' ';
+            const std::string_view field = element["containerField"];
+            text_ += plain(field.empty() ? field_of(element.name, parent) : field) + ' ';
         }
         if (const auto use = element.find("USE")) {
             text_ += "USE " + name(*use) + ' ';
@@ -92,26 +91,26 @@ class X3d {
                     fmt::format("{} {} ", field, *value == "false" || *value == "FALSE" ? "FALSE" : "TRUE");
     }
 
-    // What would begin something else is no part of a name or of numbers.
+    // Refuses text with delimiters of VRML, which must not get into a name or into numbers.
     std::string plain(std::string_view text) const {
         if (text.find_first_of("{}[]\"#") != std::string_view::npos)
             source_.broken(fmt::format("{} for a name or numbers in line {}", in_quotes(text), line_));
         return std::string(text);
     }
 
-    // Names may be of any letters: here they are numbers.
+    // Names may have any characters in X3D, so they are replaced by numbers.
     std::string name(std::string_view text) {
         return fmt::format("n{}", names_.try_emplace(std::string(text), names_.size()).first->second);
     }
 
     struct Open {
         std::string name;
-        bool node;  // put over as one
+        bool node;  // was translated as a node
     };
 
     Source source_;
     std::string text_;
-    std::size_t line_ = 1, skipped_ = 0;  // skipped: how many elements are open of one that is left out
+    std::size_t line_ = 1, skipped_ = 0;  // skipped: the depth inside an element that is left out
     std::vector<Open> open_;
     std::map<std::string, std::size_t> names_;
     bool is_x3d_ = false;
@@ -122,7 +121,7 @@ class X3d {
 Draft read_x3d(Source source) {
     if (source.whole().starts_with(std::string_view("\xe0\0\0\1", 4)))
         source.broken("binary X3D (Fast Infoset), which is not read,", "export it as plain .x3d");
-    const std::string text = X3d(source).put_over();
+    const std::string text = X3d(source).translated();
     return read_vrml_nodes(Source(text, source.name()));
 }
 
