@@ -7,7 +7,7 @@
 #include "palpate/files/formats/budget.h"
 #include "palpate/files/formats/formats.h"
 #include "palpate/files/formats/lists.h"
-#include "palpate/files/formats/place.h"
+#include "palpate/files/formats/transform.h"
 #include "palpate/files/formats/units.h"
 #include "palpate/files/formats/xml.h"
 
@@ -51,50 +51,50 @@ class Beside : public Assimp::DefaultIOSystem {
 
 dvec3 vector(aiVector3D v) { return {v.x, v.y, v.z}; }
 
-Place place_of(const aiMatrix4x4& m) {
+Transform transform_of(const aiMatrix4x4& m) {
     return {dmat3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3), dvec3(m.a4, m.b4, m.c4)};
 }
 
-Place world_of(const aiNode& node) {
-    Place place = place_of(node.mTransformation);
+Transform world_of(const aiNode& node) {
+    Transform transform = transform_of(node.mTransformation);
     for (const aiNode* above = node.mParent; above; above = above->mParent)
-        place = place_of(above->mTransformation) * place;
-    return place;
+        transform = transform_of(above->mTransformation) * transform;
+    return transform;
 }
 
 // Skinning: the weighted transform of each vertex by its bones; a vertex without bones stays with the node.
 // Empty if the mesh has no bones, or one that is not a node.
-std::vector<Place> skinned(const aiScene& scene, const aiMesh& mesh, const Place& node) {
+std::vector<Transform> skinned(const aiScene& scene, const aiMesh& mesh, const Transform& node) {
     if (!mesh.HasBones()) return {};
-    MeanPlaces places(mesh.mNumVertices);
+    MeanTransforms transforms(mesh.mNumVertices);
     for (const aiBone* bone : std::span(mesh.mBones, mesh.mNumBones)) {
         const aiNode* const joint = scene.mRootNode->FindNode(bone->mName);
         if (!joint) return {};
-        const Place place = world_of(*joint) * place_of(bone->mOffsetMatrix);
+        const Transform transform = world_of(*joint) * transform_of(bone->mOffsetMatrix);
         for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
-            if (w.mVertexId < mesh.mNumVertices) places.add(w.mVertexId, place, double(w.mWeight));
+            if (w.mVertexId < mesh.mNumVertices) transforms.add(w.mVertexId, transform, double(w.mWeight));
     }
-    return std::move(places).take(node);
+    return std::move(transforms).take(node);
 }
 
 // A mesh may be instanced by several nodes.
 void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Draft& draft) {
     const aiMatrix4x4 m = above * node.mTransformation;
-    const Place node_place = place_of(m);
+    const Transform node_transform = transform_of(m);
     for (unsigned number : std::span(node.mMeshes, node.mNumMeshes)) {
         const aiMesh& mesh = *scene.mMeshes[number];
         const std::size_t first = draft.positions.size();
         if (first + mesh.mNumVertices > ~Index(0)) throw std::bad_alloc();
-        const std::vector<Place> by_bones = skinned(scene, mesh, node_place);
-        const auto place = [&](unsigned i) -> const Place& {
-            return by_bones.empty() ? node_place : by_bones[i];
+        const std::vector<Transform> by_bones = skinned(scene, mesh, node_transform);
+        const auto transform = [&](unsigned i) -> const Transform& {
+            return by_bones.empty() ? node_transform : by_bones[i];
         };
-        const bool mirrors = by_bones.empty() ? node_place.mirrors() : mostly_mirrored(by_bones);
+        const bool mirrors = by_bones.empty() ? node_transform.mirrors() : mostly_mirror(by_bones);
         for (unsigned i = 0; i < mesh.mNumVertices; ++i)
-            draft.positions.push_back(place(i).of(vector(mesh.mVertices[i])));
+            draft.positions.push_back(transform(i).of(vector(mesh.mVertices[i])));
         if (mesh.HasNormals())
             for (unsigned i = 0; i < mesh.mNumVertices; ++i)
-                draft.normals.push_back(place(i).normal(vector(mesh.mNormals[i])));
+                draft.normals.push_back(transform(i).normal(vector(mesh.mNormals[i])));
         if (mesh.HasTextureCoords(0))  // assimp has flipped v if the format's points down
             for (aiVector3D v : std::span(mesh.mTextureCoords[0], mesh.mNumVertices))
                 draft.uvs.push_back({v.x, v.y});

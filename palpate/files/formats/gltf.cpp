@@ -4,7 +4,7 @@
 #include "palpate/base/error.h"
 #include "palpate/files/formats/formats.h"
 #include "palpate/files/formats/gltf_file.h"
-#include "palpate/files/formats/place.h"
+#include "palpate/files/formats/transform.h"
 
 #include <fmt/format.h>
 
@@ -33,12 +33,12 @@ bool may_be_required(std::string_view name) {
            std::ranges::any_of(only_looks, [&](std::string_view start) { return name.starts_with(start); });
 }
 
-dmat3 turn_by(glm::dvec4 quaternion) {  // of any length
+dmat3 rotation_by(glm::dvec4 quaternion) {  // of any length
     const dvec3 axis(quaternion);
-    return turn_about(axis, 2 * std::atan2(glm::length(axis), quaternion.w));
+    return rotation_about(axis, 2 * std::atan2(glm::length(axis), quaternion.w));
 }
 
-Place place_of(const double* matrix) {  // column by column
+Transform transform_of(const double* matrix) {  // column by column
     const auto column = [&](int k) { return dvec3(matrix[4 * k], matrix[4 * k + 1], matrix[4 * k + 2]); };
     return {dmat3(column(0), column(1), column(2)), column(3)};
 }
@@ -53,7 +53,8 @@ class Gltf {
         file_.unpack_draco();
         place_nodes();
         if (file_.list("nodes").empty())  // a library of meshes
-            for (std::size_t i = 0; i < file_.list("meshes").size(); ++i) add_mesh({{"mesh", i}}, Place());
+            for (std::size_t i = 0; i < file_.list("meshes").size(); ++i)
+                add_mesh({{"mesh", i}}, Transform());
         else
             add_meshes();
         leave_out();
@@ -89,12 +90,13 @@ class Gltf {
 
     // --- nodes ---
 
-    Place own_place(const Json& node) const {
-        if (!file_.list_of(node, "matrix").empty()) return place_of(numbers<16>(node, "matrix", {}).data());
+    Transform own_transform(const Json& node) const {
+        if (!file_.list_of(node, "matrix").empty())
+            return transform_of(numbers<16>(node, "matrix", {}).data());
         const auto [x, y, z] = numbers<3>(node, "translation", {0, 0, 0});
         const auto [a, b, c, w] = numbers<4>(node, "rotation", {0, 0, 0, 1});
         const auto [u, v, t] = numbers<3>(node, "scale", {1, 1, 1});
-        return {turn_by({a, b, c, w}) * scale_by({u, v, t}), {x, y, z}};
+        return {rotation_by({a, b, c, w}) * scaling_by({u, v, t}), {x, y, z}};
     }
 
     // The indices of nodes in one of an object's lists.
@@ -132,7 +134,7 @@ class Gltf {
                 has_parent[child] = true;
             }
         for (std::size_t i = 0; i < nodes.size(); ++i) {
-            worlds_.push_back(own_place(nodes[i]));
+            worlds_.push_back(own_transform(nodes[i]));
             if (!has_parent[i]) tops_.push_back(i);
         }
         std::size_t placed = 0;
@@ -175,12 +177,12 @@ class Gltf {
     }
 
     // The transforms of a node's instances, relative to the node.
-    std::vector<Place> instances(const Json& node) {
+    std::vector<Transform> instances(const Json& node) {
         const Json& extra = extension(node, instancing);
-        if (extra.is_null()) return {Place()};
+        if (extra.is_null()) return {Transform()};
         if (!field(node, "skin").is_null()) {
             ++uncopied_;
-            return {Place()};
+            return {Transform()};
         }
         const Json& given = field(extra, "attributes");
         const auto moves = file_.vectors_of<dvec3>(field(given, "TRANSLATION"));
@@ -189,13 +191,13 @@ class Gltf {
         const std::size_t count = std::max({moves.size(), turns.size(), scales.size()});
         for (std::size_t each : {moves.size(), turns.size(), scales.size()})
             if (each != 0 && each != count) broken("instances whose attributes differ in number");
-        std::vector<Place> places(std::max<std::size_t>(count, 1));
+        std::vector<Transform> transforms(std::max<std::size_t>(count, 1));
         for (std::size_t i = 0; i < count; ++i) {
-            if (!turns.empty()) places[i].turn = turn_by(turns[i]);
-            if (!scales.empty()) places[i].turn = places[i].turn * scale_by(scales[i]);
-            if (!moves.empty()) places[i].move = moves[i];
+            if (!turns.empty()) transforms[i].linear = rotation_by(turns[i]);
+            if (!scales.empty()) transforms[i].linear = transforms[i].linear * scaling_by(scales[i]);
+            if (!moves.empty()) transforms[i].translation = moves[i];
         }
-        return places;
+        return transforms;
     }
 
     // --- meshes ---
@@ -216,16 +218,16 @@ class Gltf {
             if (hidden)
                 ++hidden_;
             else if (!field(node, "mesh").is_null())
-                for (const Place& instance : instances(node)) add_mesh(node, worlds_[i] * instance);
+                for (const Transform& instance : instances(node)) add_mesh(node, worlds_[i] * instance);
             return !hidden;
         });
     }
 
-    void add_mesh(const Json& node, const Place& world) {
+    void add_mesh(const Json& node, const Transform& world) {
         const Json& mesh = file_.entry("meshes", field(node, "mesh"));
         const Json& weights = field(node, "weights").is_null() ? file_.list_of(mesh, "weights")
                                                                : file_.list_of(node, "weights");
-        const std::vector<Place> bones = bones_of(node);
+        const std::vector<Transform> bones = bones_of(node);
         std::map<std::string, Vertices> known;
         for (const Json& primitive : file_.list_of(mesh, "primitives")) {
             file_.spend(bytes_a_visit);
@@ -251,13 +253,14 @@ class Gltf {
         };
         add(field(primitive, "attributes"));
         for (const Json& target : file_.list_of(primitive, "targets")) add(target);
-        const auto [set, place] = texture_of(primitive);
-        return text + fmt::format("{} {} {} {} {} {} {}", set, place.turn[0].x, place.turn[0].y,
-                                  place.turn[1].x, place.turn[1].y, place.move.x, place.move.y);
+        const auto [set, transform] = texture_of(primitive);
+        return text + fmt::format("{} {} {} {} {} {} {}", set, transform.linear[0].x, transform.linear[0].y,
+                                  transform.linear[1].x, transform.linear[1].y, transform.translation.x,
+                                  transform.translation.y);
     }
 
     // The transforms by the joints of a node's skin, which replace that of the node; empty if it has no skin.
-    std::vector<Place> bones_of(const Json& node) {
+    std::vector<Transform> bones_of(const Json& node) {
         if (field(node, "skin").is_null()) return {};
         const Json& skin = file_.entry("skins", field(node, "skin"));
         const Json& joints = file_.list_of(skin, "joints");
@@ -265,17 +268,18 @@ class Gltf {
         const std::vector<double> matrices = file_.numbers_of(inverse, "MAT4");
         if (joints.empty() || (!inverse.is_null() && matrices.size() < 16 * joints.size()))
             broken("a skin with fewer matrices than joints");
-        file_.spend(joints.size(), sizeof(Place));
-        std::vector<Place> bones;
+        file_.spend(joints.size(), sizeof(Transform));
+        std::vector<Transform> bones;
         for (std::size_t joint : nodes_in(skin, "joints")) {
-            const Place bind = inverse.is_null() ? Place() : place_of(&matrices[16 * bones.size()]);
+            const Transform bind =
+                inverse.is_null() ? Transform() : transform_of(&matrices[16 * bones.size()]);
             bones.push_back(worlds_[joint] * bind);
         }
         return bones;
     }
 
-    Vertices add_vertices(const Json& primitive, const Json& weights, const Place& world,
-                          const std::vector<Place>& bones) {
+    Vertices add_vertices(const Json& primitive, const Json& weights, const Transform& world,
+                          const std::vector<Transform>& bones) {
         const Json& attributes = field(primitive, "attributes");
         std::vector<dvec3> positions = at_rest<dvec3>(primitive, "POSITION", weights, 0);
         const std::size_t count = positions.size();
@@ -286,13 +290,14 @@ class Gltf {
         if (too_far_for_floats(positions)) draft_.single = true;
 
         Vertices added{Index(draft_.positions.size()), count, world.mirrors()};
-        const bool carries = !bones.empty() && !field(attributes, "JOINTS_0").is_null();
-        const std::vector<Place> carried = carries ? carry(attributes, bones, count) : std::vector<Place>();
-        if (carries) added.mirrored = mostly_mirrored(carried);
+        const bool is_skinned = !bones.empty() && !field(attributes, "JOINTS_0").is_null();
+        const std::vector<Transform> skinned =
+            is_skinned ? skin(attributes, bones, count) : std::vector<Transform>();
+        if (is_skinned) added.mirrored = mostly_mirror(skinned);
         for (std::size_t i = 0; i < count; ++i) {
-            const Place& place = carries ? carried[i] : world;
-            draft_.positions.push_back(place.of(positions[i]));
-            if (!normals.empty()) draft_.normals.push_back(place.normal(normals[i]));
+            const Transform& transform = is_skinned ? skinned[i] : world;
+            draft_.positions.push_back(transform.of(positions[i]));
+            if (!normals.empty()) draft_.normals.push_back(transform.normal(normals[i]));
         }
         for (dvec2 uv : uvs) {
             const dvec3 placed = in_texture.of({uv, 0});
@@ -325,9 +330,10 @@ class Gltf {
     }
 
     // The skinning transform of each vertex; that of the first joint for a vertex without joints.
-    std::vector<Place> carry(const Json& attributes, const std::vector<Place>& bones, std::size_t count) {
-        file_.spend(count, sizeof(Place));
-        MeanPlaces places(count);
+    std::vector<Transform> skin(const Json& attributes, const std::vector<Transform>& bones,
+                                std::size_t count) {
+        file_.spend(count, sizeof(Transform));
+        MeanTransforms transforms(count);
         for (int set = 0;; ++set) {
             const Json& joints = field(attributes, fmt::format("JOINTS_{}", set));
             const Json& shares = field(attributes, fmt::format("WEIGHTS_{}", set));
@@ -339,16 +345,16 @@ class Gltf {
                     if (by[i][k] == 0) continue;
                     if (!is_whole(on[i][k], 0, double(bones.size()) - 1))
                         broken(fmt::format("a vertex on joint {} of {}", on[i][k], bones.size()));
-                    places.add(i, bones[std::size_t(on[i][k])], by[i][k]);
+                    transforms.add(i, bones[std::size_t(on[i][k])], by[i][k]);
                 }
         }
-        return std::move(places).take(bones[0]);
+        return std::move(transforms).take(bones[0]);
     }
 
     // Which texture coordinates a primitive's texture takes, and their transform.
     struct Texture {
         std::string set = "TEXCOORD_0";
-        Place place{};
+        Transform transform{};
     };
 
     Texture texture_of(const Json& primitive) const {
@@ -360,9 +366,9 @@ class Gltf {
         const auto [x, y] = numbers<2>(by, "offset", {0, 0});
         const auto [u, v] = numbers<2>(by, "scale", {1, 1});
         const Json& angle = field(by, "rotation");
-        const dmat3 turn = turn_about({0, 0, 1}, angle.is_number() ? -angle.get<double>() : 0);
+        const dmat3 turn = rotation_about({0, 0, 1}, angle.is_number() ? -angle.get<double>() : 0);
         return {fmt::format("TEXCOORD_{}", file_.whole(set, "a set of texture coordinates", 0)),
-                {turn * scale_by({u, v, 1}), {x, y, 0}}};
+                {turn * scaling_by({u, v, 1}), {x, y, 0}}};
     }
 
     // The corners of a primitive's faces, as numbers of its vertices.
@@ -441,7 +447,7 @@ class Gltf {
     }
 
     GltfFile file_;
-    std::vector<Place> worlds_;                 // of nodes
+    std::vector<Transform> worlds_;             // of nodes
     std::vector<std::size_t> tops_;             // nodes without a parent
     bool has_normals_ = true, has_uvs_ = true;  // all parts so far
     std::size_t unfinished_ = 0, uncopied_ = 0, hidden_ = 0;

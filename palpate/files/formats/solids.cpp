@@ -1,6 +1,6 @@
 #include "palpate/files/formats/solids.h"
 
-#include "palpate/files/formats/place.h"
+#include "palpate/files/formats/transform.h"
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,7 @@ dvec3 unit_or_zero(dvec3 v) {
 dmat3 from_y_to(dvec3 direction) {
     const dvec3 axis = glm::cross(dvec3(0, 1, 0), direction);
     const double sine = glm::length(axis), cosine = direction.y;
-    return turn_about(sine > 0 ? axis : dvec3(1, 0, 0), std::atan2(sine, cosine));
+    return rotation_about(sine > 0 ? axis : dvec3(1, 0, 0), std::atan2(sine, cosine));
 }
 
 // The frame of the cross section at each point of a spine: y along the spine, z perpendicular to its bend.

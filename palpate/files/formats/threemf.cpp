@@ -4,7 +4,7 @@
 #include "palpate/base/error.h"
 #include "palpate/files/formats/budget.h"
 #include "palpate/files/formats/formats.h"
-#include "palpate/files/formats/place.h"
+#include "palpate/files/formats/transform.h"
 #include "palpate/files/formats/units.h"
 #include "palpate/files/formats/xml.h"
 
@@ -80,7 +80,7 @@ using Name = std::pair<std::string, std::string>;
 
 struct Part {
     Name object;
-    Place place;
+    Transform transform;
 };
 
 struct Object {
@@ -104,7 +104,7 @@ class ThreeMf {
         }
         note_modifiers();
         if (build_.empty()) build_all();
-        for (const Part& item : build_) add(item.object, item.place, 0);
+        for (const Part& item : build_) add(item.object, item.transform, 0);
         if (supports_ > 0) draft_.notes.push_back(fmt::format("left out {}", counted(supports_, "support")));
         if (beams_ > 0)
             draft_.notes.push_back(fmt::format("left out {} of a lattice", counted(beams_, "beam")));
@@ -118,7 +118,7 @@ class ThreeMf {
         for (const auto& [name, object] : objects_)
             for (const Part& part : object.parts) parts.insert(part.object);
         for (const auto& [name, object] : objects_)
-            if (!parts.contains(name)) build_.push_back({name, Place()});
+            if (!parts.contains(name)) build_.push_back({name, Transform()});
         draft_.notes.push_back("read all objects, because the file says of none that it is to be built");
     }
 
@@ -159,7 +159,7 @@ class ThreeMf {
                 const std::string in = path.empty() ? file : without_slash(path);
                 budget_.spend(sizeof(Part) + in.size() + id.size());
                 if (!known_.contains(in)) named_.insert(in);
-                return Part{{in, std::string(id)}, place(element["transform"], bad)};
+                return Part{{in, std::string(id)}, transform(element["transform"], bad)};
             };
             if (element.name == "model") {
                 if (file == root_) read_unit(element);
@@ -242,18 +242,18 @@ class ThreeMf {
 
     // A transform of twelve numbers: the images of the axes, and then of the origin.
     template <class Bad>
-    static Place place(std::string_view text, Bad bad) {
-        Place place;
-        if (text.empty()) return place;
+    static Transform transform(std::string_view text, Bad bad) {
+        Transform transform;
+        if (text.empty()) return transform;
         for (int k = 0; k < 12; ++k) {
             const auto value = spelled(word(text));
             if (!value) bad("a transform that is not 12 numbers");
-            (k < 9 ? place.turn[k / 3] : place.move)[k % 3] = *value;
+            (k < 9 ? transform.linear[k / 3] : transform.translation)[k % 3] = *value;
         }
-        return place;
+        return transform;
     }
 
-    void add(const Name& name, const Place& place, int depth) {
+    void add(const Name& name, const Transform& transform, int depth) {
         if (depth > most_components_deep) source_.broken("an object that contains itself");
         budget_.spend(bytes_an_object);
         const auto found = objects_.find(name);
@@ -268,13 +268,13 @@ class ThreeMf {
         budget_.spend(object.positions.size(), sizeof(dvec3));
         budget_.spend(object.triangles.size(), 4 * sizeof(Index));
         if (first + object.positions.size() > ~Index(0)) source_.broken("more than 2^32 vertices");
-        for (dvec3 p : object.positions) draft_.positions.push_back(place.of(p));
+        for (dvec3 p : object.positions) draft_.positions.push_back(transform.of(p));
         for (uvec3 t : object.triangles) {
-            if (place.mirrors()) std::swap(t.x, t.z);
+            if (transform.mirrors()) std::swap(t.x, t.z);
             for (int k = 0; k < 3; ++k) draft_.corners.push_back(Index(first) + t[k]);
             draft_.sizes.push_back(3);
         }
-        for (const Part& part : object.parts) add(part.object, place * part.place, depth + 1);
+        for (const Part& part : object.parts) add(part.object, transform * part.transform, depth + 1);
     }
 
     Source source_;

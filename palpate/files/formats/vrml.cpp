@@ -3,8 +3,8 @@
 // straight into the draft, in the node's own coordinates, and a Transform then moves what its children have
 // added. DEF stores the position of a node in the text, and USE parses it there again.
 #include "palpate/files/formats/formats.h"
-#include "palpate/files/formats/place.h"
 #include "palpate/files/formats/solids.h"
+#include "palpate/files/formats/transform.h"
 
 #include <fmt/format.h>
 
@@ -202,7 +202,7 @@ class Vrml {
         return by;
     }
 
-    static dmat3 turn(const Rotation& by) { return turn_about({by[0], by[1], by[2]}, by[3]); }
+    static dmat3 turn(const Rotation& by) { return rotation_about({by[0], by[1], by[2]}, by[3]); }
 
     bool truth() {
         const std::string_view word = next();
@@ -634,8 +634,8 @@ class Vrml {
     // Scales along rotated axes and rotates, both about the centre, then translates.
     void place(Mark start, const Placement& by) {
         const dmat3 along = turn(by.scale_orientation);
-        const Place all{turn(by.rotation) * along * scale_by(by.scale) * glm::transpose(along),
-                        by.translation + by.center};
+        const Transform all{turn(by.rotation) * along * scaling_by(by.scale) * glm::transpose(along),
+                            by.translation + by.center};
         for (std::size_t i = start.positions; i < draft_.positions.size(); ++i)
             draft_.positions[i] = all.of(draft_.positions[i] - by.center);
         if (all.mirrors()) turn_over(start);

@@ -10,64 +10,65 @@
 namespace palpate {
 
 /// An affine transform of a part of a file: a linear map, which may scale and mirror, and then a translation.
-struct Place {
-    dmat3 turn = dmat3(1);
-    dvec3 move = dvec3(0);
+struct Transform {
+    dmat3 linear = dmat3(1);
+    dvec3 translation = dvec3(0);
 
-    dvec3 of(dvec3 point) const { return turn * point + move; }
+    dvec3 of(dvec3 point) const { return linear * point + translation; }
 
     /// Transforms a normal, made unit: by the cofactors of the matrix, which are cross products of its
     /// columns.
     dvec3 normal(dvec3 n) const {
-        const dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
-                              glm::cross(turn[0], turn[1]));
+        const dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                              glm::cross(linear[0], linear[1]));
         const dvec3 turned = (mirrors() ? -1.0 : 1.0) * (cofactors * n);
         const double length = glm::length(turned);
         return length > 0 ? turned / length : dvec3(0, 0, 1);
     }
 
-    bool mirrors() const { return glm::determinant(turn) < 0; }
+    bool mirrors() const { return glm::determinant(linear) < 0; }
 };
 
 /// Whether faces must be flipped, because most of these transforms mirror.
-inline bool mostly_mirrored(std::span<const Place> places) {
-    return 2 * std::size_t(std::ranges::count_if(places, &Place::mirrors)) > places.size();
+inline bool mostly_mirror(std::span<const Transform> transforms) {
+    return 2 * std::size_t(std::ranges::count_if(transforms, &Transform::mirrors)) > transforms.size();
 }
 
 /// Linear blend skinning: the weighted mean of the bones' transforms for each vertex.
-class MeanPlaces {
+class MeanTransforms {
  public:
-    explicit MeanPlaces(std::size_t vertices)
-        : sums_(vertices, Place{dmat3(0), dvec3(0)}), weights_(vertices, 0.0) {}
+    explicit MeanTransforms(std::size_t vertices)
+        : sums_(vertices, Transform{dmat3(0), dvec3(0)}), weights_(vertices, 0.0) {}
 
-    void add(std::size_t vertex, const Place& bone, double weight) {
-        sums_[vertex].turn += weight * bone.turn;
-        sums_[vertex].move += weight * bone.move;
+    void add(std::size_t vertex, const Transform& bone, double weight) {
+        sums_[vertex].linear += weight * bone.linear;
+        sums_[vertex].translation += weight * bone.translation;
         weights_[vertex] += weight;
     }
 
     /// One for each vertex; `otherwise` if the sum of its weights is not above 0.
-    std::vector<Place> take(const Place& otherwise) && {
+    std::vector<Transform> take(const Transform& otherwise) && {
         for (std::size_t i = 0; i < sums_.size(); ++i)
-            sums_[i] =
-                weights_[i] > 0 ? Place{sums_[i].turn / weights_[i], sums_[i].move / weights_[i]} : otherwise;
+            sums_[i] = weights_[i] > 0
+                           ? Transform{sums_[i].linear / weights_[i], sums_[i].translation / weights_[i]}
+                           : otherwise;
         return std::move(sums_);
     }
 
  private:
-    std::vector<Place> sums_;  // times weight
+    std::vector<Transform> sums_;  // times weight
     std::vector<double> weights_;
 };
 
 /// The composition: `inner`, then `outer`.
-inline Place operator*(const Place& outer, const Place& inner) {
-    return {outer.turn * inner.turn, outer.of(inner.move)};
+inline Transform operator*(const Transform& outer, const Transform& inner) {
+    return {outer.linear * inner.linear, outer.of(inner.translation)};
 }
 
-inline dmat3 scale_by(dvec3 s) { return {s.x, 0, 0, 0, s.y, 0, 0, 0, s.z}; }
+inline dmat3 scaling_by(dvec3 s) { return {s.x, 0, 0, 0, s.y, 0, 0, 0, s.z}; }
 
 /// A rotation by an angle (rad) about an axis of any length; the identity if the axis is zero.
-inline dmat3 turn_about(dvec3 axis, double angle) {
+inline dmat3 rotation_about(dvec3 axis, double angle) {
     const double length = glm::length(axis);
     if (!(length > 0)) return dmat3(1);
     const dvec3 a = axis / length;
