@@ -21,12 +21,12 @@ void refuse(std::string_view what, const std::filesystem::path& path, std::strin
     throw Error(what, path.string(), remedy);
 }
 
-std::string small_letters(std::string text) {
+std::string lower_case(std::string text) {
     for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
     return text;
 }
 
-std::string lower_name(const std::filesystem::path& path) { return small_letters(path.filename().string()); }
+std::string lower_name(const std::filesystem::path& path) { return lower_case(path.filename().string()); }
 
 ivec3 checked_sizes(const std::vector<double>& sizes, const std::filesystem::path& path) {
     if (sizes.size() != 3)

@@ -45,12 +45,12 @@ bool for_each_pair_of_leaves(const Tree& tree, float reach, Skip skip, Visit vis
     return ended;
 }
 
-/// Calls look(i, j) for each pair of faces of two leaves, by their indices in `tree.faces`.
-template <class Look>
-void for_each_pair_of_faces(const Tree& tree, Index leaf, Index other, Look look) {
+/// Calls visit(i, j) for each pair of faces of two leaves, by their indices in `tree.faces`.
+template <class Visit>
+void for_each_pair_of_faces(const Tree& tree, Index leaf, Index other, Visit visit) {
     const Tree::Node &a = tree.nodes[leaf], &b = tree.nodes[other];
     for (Index i = a.first; i < a.first + a.count; ++i)
-        for (Index j = leaf == other ? i + 1 : b.first; j < b.first + b.count; ++j) look(i, j);
+        for (Index j = leaf == other ? i + 1 : b.first; j < b.first + b.count; ++j) visit(i, j);
 }
 
 }  // namespace palpate

@@ -125,9 +125,9 @@ class Planes {
 struct Share {
     std::vector<uvec2> waiting{};  // pairs of nodes
     std::vector<uvec2> cuts{};     // pairs of faces
-    std::size_t looks = 0;
+    std::size_t tests = 0;
 };
-constexpr std::size_t shares_at_once = 64, looks_in_a_share = 20'000;
+constexpr std::size_t shares_at_once = 64, tests_in_a_share = 20'000;
 
 // These faces and `rings` rings of faces around them.
 void drop_around(Mesh& mesh, const Intersections& found, int rings) {
@@ -152,7 +152,7 @@ std::size_t count_faces(const Intersections& found) {
 
 }  // namespace
 
-std::size_t most_looks_at(const Mesh& mesh) { return 10'000'000 + 100 * mesh.triangles.size(); }
+std::size_t most_tests_of(const Mesh& mesh) { return 10'000'000 + 100 * mesh.triangles.size(); }
 
 Intersections intersections(const Mesh& mesh, std::size_t most) { return intersections(Tree(mesh), most); }
 
@@ -167,12 +167,12 @@ Intersections intersections(const Tree& tree, std::size_t most) {
                  [&](std::size_t i) { triangles[i] = triangle(mesh, tree.faces[i]); });
 
     const Planes planes(tree, touch);
-    const std::size_t most_looks = most_looks_at(mesh);
-    std::size_t looks = 0;
+    const std::size_t most_tests = most_tests_of(mesh);
+    std::size_t tests = 0;
     std::vector<uvec2> waiting = {{0, 0}};
     // All threads search, in rounds of fixed size, so that the point at which a search gives up does not
     // depend on their number.
-    while (!waiting.empty() && looks <= most_looks && found.faces.size() < most) {
+    while (!waiting.empty() && tests <= most_tests && found.faces.size() < most) {
         std::vector<Share> shares(std::min(shares_at_once, waiting.size()));
         for (Share& share : shares) {
             share.waiting.push_back(waiting.back());
@@ -184,15 +184,15 @@ Intersections intersections(const Tree& tree, std::size_t most) {
                 tree, share.waiting, 0, [&](Index a, Index b) { return planes.in_one_plane(a, b); },
                 [&](Index leaf, Index other) {
                     for_each_pair_of_faces(tree, leaf, other, [&](Index a, Index b) {
-                        ++share.looks;
+                        ++share.tests;
                         if (cut(triangles[a], triangles[b], touch))
                             share.cuts.push_back({tree.faces[a], tree.faces[b]});
                     });
-                    return share.looks < looks_in_a_share;
+                    return share.tests < tests_in_a_share;
                 });
         });
         for (const Share& share : shares) {
-            looks += share.looks;
+            tests += share.tests;
             found.faces.insert(found.faces.end(), share.cuts.begin(), share.cuts.end());
             waiting.insert(waiting.end(), share.waiting.begin(), share.waiting.end());
         }

@@ -19,7 +19,7 @@ Intersections intersections(const Mesh& mesh, std::size_t most = 1'000'000);
 Intersections intersections(const Tree& tree, std::size_t most = 1'000'000);
 
 /// How many pairs of faces such a search tests before it gives up.
-std::size_t most_looks_at(const Mesh& mesh);
+std::size_t most_tests_of(const Mesh& mesh);
 
 /// If few faces cut through each other, removes them with a ring of faces around them and closes the holes,
 /// repeatedly. Returns how many faces were removed; 0, with the mesh unchanged, if that does not help. The

@@ -17,18 +17,17 @@ std::vector<char> inward(const Mesh& mesh, const Parts& part) {
     return inward;
 }
 
-// Tested at the centres of a few faces of each part. Where another part touches, the result is undefined and
-// does not count.
-Arrangement::Around surroundings(const Mesh& mesh, const Parts& part, const Tree& tree) {
-    constexpr std::size_t most_looks = 8;
+// The winding number of the other parts around each part, tested at the centres of a few of its faces. Where
+// another part touches, it is undefined and does not count.
+Arrangement::Around windings_around(const Mesh& mesh, const Parts& part, const Tree& tree) {
+    constexpr std::size_t most_samples = 8;
     const WindingNumber all(tree);
-    std::vector<std::vector<Index>> faces(part.count);
-    for (Index face = 0; face < part.of.size(); ++face) faces[part.of[face]].push_back(face);
+    const std::vector<std::vector<Index>> faces = faces_by(part.of, part.count);
     const auto around = [&](const std::vector<Index>& own) -> std::optional<int> {
-        const std::size_t looks = std::min(most_looks, own.size());
+        const std::size_t samples = std::min(most_samples, own.size());
         int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
-        for (std::size_t look = 0; look < looks; ++look) {
-            const uvec3 t = mesh.triangles[own[look * own.size() / looks]];
+        for (std::size_t sample = 0; sample < samples; ++sample) {
+            const uvec3 t = mesh.triangles[own[sample * own.size() / samples]];
             const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]),
                 middle = (a + b + c) / 3.0;
             const double seen = all.at(middle) - exact_winding(mesh, own, middle);
@@ -45,19 +44,18 @@ Arrangement::Around surroundings(const Mesh& mesh, const Parts& part, const Tree
     return result;
 }
 
-// Whether each part has inside on one side and outside on the other; `crossing` counts those of which that is
-// true only in some places.
-std::vector<char> part_inside_from_outside(const Mesh& mesh, const Parts& part, const Tree& tree,
-                                           std::size_t& crossing) {
+// Whether each part separates inside from outside; `crossing` counts those that do so only in some places.
+std::vector<char> separating_parts(const Mesh& mesh, const Parts& part, const Tree& tree,
+                                   std::size_t& crossing) {
     const std::vector<char> is_inward = inward(mesh, part);
-    const Arrangement::Around around = surroundings(mesh, part, tree);
-    std::vector<char> does;
+    const Arrangement::Around around = windings_around(mesh, part, tree);
+    std::vector<char> separates;
     crossing = 0;
     for (Index i = 0; i < part.count; ++i) {
         crossing += !around[i];
-        does.push_back(!around[i] || (is_inward[i] ? *around[i] == 1 : *around[i] <= 0));
+        separates.push_back(!around[i] || (is_inward[i] ? *around[i] == 1 : *around[i] <= 0));
     }
-    return does;
+    return separates;
 }
 
 }  // namespace
@@ -72,7 +70,7 @@ std::vector<char> wrong_way_out(Mesh& mesh, const Parts& part, Arrangement& arra
     if (part.count < 2 || std::count(is_inward.begin(), is_inward.end(), true) == 0) return is_inward;
     if (!arrangement.around_outward) {
         turn_over(mesh, part, is_inward);
-        arrangement.around_outward = surroundings(mesh, part, arrangement.tree());
+        arrangement.around_outward = windings_around(mesh, part, arrangement.tree());
         turn_over(mesh, part, is_inward);
     }
     std::vector<char> turn(part.count);
@@ -104,7 +102,7 @@ Nested drop_nested(Mesh& mesh, Arrangement& arrangement) {
     Nested found;
     const Parts part = parts(mesh);
     if (part.count < 2) return found;
-    const std::vector<char> keep = part_inside_from_outside(mesh, part, arrangement.tree(), found.crossing);
+    const std::vector<char> keep = separating_parts(mesh, part, arrangement.tree(), found.crossing);
     found.dropped = keep_parts(mesh, part, keep).parts;
     if (found.dropped > 0) arrangement.forget();
     return found;
@@ -124,7 +122,7 @@ Nesting nesting(const Mesh& mesh) {
     found.inside_out = std::size_t(std::count(turn.begin(), turn.end(), true));
     if (part.count < 2) return found;
     turn_over(turned, part, turn);
-    const std::vector<char> keep = part_inside_from_outside(turned, part, arrangement.tree(), found.crossing),
+    const std::vector<char> keep = separating_parts(turned, part, arrangement.tree(), found.crossing),
                             is_inward = inward(turned, part);
     for (Index i = 0; i < part.count; ++i) {
         found.redundant += !keep[i];

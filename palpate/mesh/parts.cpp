@@ -24,6 +24,12 @@ Parts parts(const Mesh& mesh) {
     return result;
 }
 
+std::vector<std::vector<Index>> faces_by(const std::vector<Index>& group_of_face, Index groups) {
+    std::vector<std::vector<Index>> faces(groups);
+    for (Index face = 0; face < group_of_face.size(); ++face) faces[group_of_face[face]].push_back(face);
+    return faces;
+}
+
 std::vector<Bounds> boxes(const Mesh& mesh, const Parts& parts) {
     std::vector<Bounds> box(parts.count);
     for (std::size_t face = 0; face < mesh.triangles.size(); ++face)

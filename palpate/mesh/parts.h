@@ -15,6 +15,9 @@ struct Parts {
 };
 Parts parts(const Mesh& mesh);
 
+/// The faces of each group, such as a part.
+std::vector<std::vector<Index>> faces_by(const std::vector<Index>& group_of_face, Index groups);
+
 /// The bounding box of each part.
 std::vector<Bounds> boxes(const Mesh& mesh, const Parts& parts);
 

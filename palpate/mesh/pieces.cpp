@@ -24,12 +24,6 @@ constexpr double touching = 1e-5;  // as a part of the longest side
 constexpr double most_points = 60e3, most_in_all = 2e6;
 constexpr double least_points = 1e3, least_of_many = 64;
 
-std::vector<std::vector<Index>> faces_by(const std::vector<Index>& group_of_face, Index groups) {
-    std::vector<std::vector<Index>> faces(groups);
-    for (Index face = 0; face < group_of_face.size(); ++face) faces[group_of_face[face]].push_back(face);
-    return faces;
-}
-
 std::array<dvec3, 3> corners_of(const Mesh& mesh, Index face) {
     const uvec3 t = mesh.triangles[face];
     return {dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z])};
@@ -56,7 +50,7 @@ bool unite_touching(const Tree& tree, const Parts& part, Groups& groups) {
     const std::vector<Index> only = one_part_nodes(tree, part);
     const vec3 size = bounds(mesh).size();
     const double reach = touching * double(std::max({size.x, size.y, size.z}));
-    std::size_t looks = 0;
+    std::size_t tests = 0;
     return for_each_pair_of_leaves(
         tree, float(reach),
         [&](Index a, Index b) {
@@ -69,8 +63,8 @@ bool unite_touching(const Tree& tree, const Parts& part, Groups& groups) {
                 if (are_near(corners_of(mesh, face), corners_of(mesh, other), reach))
                     groups.unite(part.of[face], part.of[other]);
             });
-            looks += std::size_t(tree.nodes[a].count) * tree.nodes[b].count;
-            return looks <= most_looks_at(mesh);
+            tests += std::size_t(tree.nodes[a].count) * tree.nodes[b].count;
+            return tests <= most_tests_of(mesh);
         });
 }
 
@@ -80,9 +74,9 @@ bool holds(const Bounds& box, const Bounds& other) {
 }
 
 // Sweep and prune: bounding boxes sorted along the axis on which they overlap least.
-class ByStart {
+class SortedBoxes {
  public:
-    explicit ByStart(const std::vector<Bounds>& boxes) : boxes_(boxes), order_(boxes.size()) {
+    explicit SortedBoxes(const std::vector<Bounds>& boxes) : boxes_(boxes), order_(boxes.size()) {
         Bounds all;
         dvec3 sizes(0);
         for (const Bounds& box : boxes) {
@@ -90,13 +84,13 @@ class ByStart {
             all.include(box.high);
             sizes += dvec3(box.size());
         }
-        const dvec3 crowd = sizes / glm::max(dvec3(all.size()), std::numeric_limits<double>::min());
-        axis_ = crowd.x <= crowd.y && crowd.x <= crowd.z ? 0 : crowd.y <= crowd.z ? 1 : 2;
+        const dvec3 overlap = sizes / glm::max(dvec3(all.size()), std::numeric_limits<double>::min());
+        axis_ = overlap.x <= overlap.y && overlap.x <= overlap.z ? 0 : overlap.y <= overlap.z ? 1 : 2;
         std::iota(order_.begin(), order_.end(), Index(0));
         std::sort(order_.begin(), order_.end(), [&](Index a, Index b) { return start(a) < start(b); });
     }
 
-    std::vector<Index> held_by(Index outer) const {
+    std::vector<Index> inside(Index outer) const {
         const Bounds& box = boxes_[outer];
         std::vector<Index> held;
         auto at = std::partition_point(order_.begin(), order_.end(),
@@ -126,10 +120,10 @@ void unite_nested(const Mesh& mesh, const Parts& part, Groups& groups) {
     const std::vector<Bounds> box = boxes(mesh, part);
     const std::vector<double> volume = volumes(mesh, part);
     const std::vector<std::vector<Index>> faces = faces_by(part.of, part.count);
-    const ByStart by_start(box);
+    const SortedBoxes sorted(box);
     std::vector<Around> innermost(part.count);
     for (Index outer = 0; outer < part.count; ++outer) {
-        const std::vector<Index> inner = by_start.held_by(outer);
+        const std::vector<Index> inner = sorted.inside(outer);
         if (inner.empty()) continue;
         const Tree tree(mesh, inner.size() > few ? faces[outer] : std::vector<Index>());
         const WindingNumber winding(tree);

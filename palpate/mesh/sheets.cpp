@@ -54,7 +54,7 @@ void pair_by_angle(const Mesh& mesh, Index low, std::span<const Side> sides, std
 }
 
 // Gives each fan of faces around a vertex its own copy of the vertex; the first keeps the original.
-void part_vertices(Mesh& mesh, const std::vector<Index>& twin) {
+void separate_vertices(Mesh& mesh, const std::vector<Index>& twin) {
     Groups fans(twin.size());
     for (Index corner = 0; corner < twin.size(); ++corner) {
         if (twin[corner] == none) continue;
@@ -89,7 +89,7 @@ void cut_side(Mesh& mesh, Index corner, Index middle) {
 // A fan may meet the same edge twice, at both of its ends: then copying the ends does not separate it. There
 // all sheets but one get a vertex at the midpoint of the edge; but each face only once, because its indices
 // change.
-void part_edges(Mesh& mesh, const std::vector<Index>& twin) {
+void separate_edges(Mesh& mesh, const std::vector<Index>& twin) {
     std::vector<Index> sides;  // one side of each sheet
     std::vector<char> taken(mesh.triangles.size());
     for_each_edge(Corners(mesh), [&](Index, std::span<const Side> all) {
@@ -133,8 +133,8 @@ std::size_t separate_sheets(Mesh& mesh) {
     for (std::size_t last = 0; last != mesh.positions.size();) {
         last = mesh.positions.size();
         const std::vector<Index> twin = twins(mesh);
-        part_vertices(mesh, twin);
-        part_edges(mesh, twin);
+        separate_vertices(mesh, twin);
+        separate_edges(mesh, twin);
     }
     if (mesh.positions.size() > before) drop_attributes(mesh);
     return mesh.positions.size() - before;

@@ -147,15 +147,15 @@ class Filling {
         return i == none || face_[i] == none ? none : i;
     }
 
-    // Calls look(voxel, its index) for each voxel with a stored value, in parallel.
-    template <class Look>
-    void for_each_voxel(const Look& look) const {
+    // Calls visit(voxel, its index) for each voxel with a stored value, in parallel.
+    template <class Visit>
+    void for_each_voxel(const Visit& visit) const {
         parallel_for(near_.size(), 8, [&](std::size_t i) {
             const ivec3 low = grid_.low_of(near_[i]);
             Index number = grid_.first[near_[i]];
             for (int z = 0; z < wide; ++z)
                 for (int y = 0; y < wide; ++y)
-                    for (int x = 0; x < wide; ++x) look(low + ivec3(x, y, z), number++);
+                    for (int x = 0; x < wide; ++x) visit(low + ivec3(x, y, z), number++);
         });
     }
 

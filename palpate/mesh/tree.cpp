@@ -25,9 +25,9 @@ std::pair<Index, Index> nodes_over(Index count) {
 
 // Since the number of nodes of a subtree is known beforehand, both subtrees are built in parallel, and the
 // result does not depend on the number of threads.
-class Halving {
+class TreeBuilder {
  public:
-    explicit Halving(Tree& tree) : mesh_(tree.mesh), tree_(tree), placed_(tree.faces.size()) {
+    explicit TreeBuilder(Tree& tree) : mesh_(tree.mesh), tree_(tree), placed_(tree.faces.size()) {
         tree.nodes.resize(nodes_over(Index(tree.faces.size())).first);
         parallel_for(placed_.size(), 16384, [&](std::size_t i) {
             const uvec3 t = mesh_.triangles[tree.faces[i]];
@@ -37,7 +37,7 @@ class Halving {
         });
     }
 
-    void halve_all() { halve(0, 0, Index(placed_.size())); }
+    void build() { split(0, 0, Index(placed_.size())); }
 
  private:
     struct Placed {
@@ -45,15 +45,15 @@ class Halving {
         Index face;
     };
 
-    void halve(Index node, Index first, Index count) {
+    void split(Index node, Index first, Index count) {
         Tree::Node& here = tree_.nodes[node];
         here.first = first, here.count = count, here.second = 0;
         if (count <= most_in_a_leaf) return enclose(here);
         const Index half = count / 2;
-        part_by_middle(first, count);
+        partition_at_median(first, count);
         here.second = node + 1 + nodes_over(half).first;
-        const auto first_half = [&] { halve(node + 1, first, half); };
-        const auto second_half = [&] { halve(here.second, first + half, count - half); };
+        const auto first_half = [&] { split(node + 1, first, half); };
+        const auto second_half = [&] { split(here.second, first + half, count - half); };
         if (count > worth_sharing) {
             parallel_invoke(first_half, second_half);
         } else {
@@ -65,7 +65,7 @@ class Halving {
     }
 
     // Partitions the faces at the median along the longest axis.
-    void part_by_middle(Index first, Index count) {
+    void partition_at_median(Index first, Index count) {
         Bounds middles;
         for (Index i = first; i < first + count; ++i) middles.include(placed_[i].middle);
         const vec3 size = middles.size();
@@ -110,7 +110,7 @@ std::vector<Index> all_faces(const Mesh& mesh) {
 Tree::Tree(const Mesh& all) : Tree(all, all_faces(all)) {}
 
 Tree::Tree(const Mesh& all, std::vector<Index> some) : faces(std::move(some)), mesh(all) {
-    if (!faces.empty()) Halving(*this).halve_all();
+    if (!faces.empty()) TreeBuilder(*this).build();
 }
 
 std::vector<Tree::Plate> Tree::plates() const {

@@ -132,17 +132,17 @@ void WindingNumber::gather(Index node, Ball& ball) const {
 
 double WindingNumber::at(dvec3 point) const {
     Sum sum;
-    if (!tree_.nodes.empty()) look(0, point, sum);
+    if (!tree_.nodes.empty()) add(0, point, sum);
     return sum.winding();
 }
 
 double WindingNumber::at(dvec3 point, const Ball& ball) const {
     Sum sum{ball.value + glm::dot(ball.slope, point - ball.centre)};
-    for (Index node : ball.near) look(node, point, sum);
+    for (Index node : ball.near) add(node, point, sum);
     return sum.winding();
 }
 
-void WindingNumber::look(std::size_t node, dvec3 point, Sum& sum) const {
+void WindingNumber::add(std::size_t node, dvec3 point, Sum& sum) const {
     const Tree::Plate& plate = plates_[node];
     const dvec3 way = plate.centre - point;
     const double squared = glm::dot(way, way);
@@ -150,8 +150,8 @@ void WindingNumber::look(std::size_t node, dvec3 point, Sum& sum) const {
         return sum.add_plate(plate.area, way, squared);
     const Tree::Node& box = tree_.nodes[node];
     if (box.second != 0) {
-        look(node + 1, point, sum);
-        look(box.second, point, sum);
+        add(node + 1, point, sum);
+        add(box.second, point, sum);
         return;
     }
     for (Index i = box.first; i < box.first + box.count; ++i) {

@@ -40,7 +40,7 @@ class WindingNumber {
         dvec3 area, centre;  // like those of a plate
         double squared;      // of the distance from which it counts as far
     };
-    void look(std::size_t node, dvec3 point, Sum& sum) const;
+    void add(std::size_t node, dvec3 point, Sum& sum) const;
     void gather(Index node, Ball& ball) const;
 
     const Tree& tree_;

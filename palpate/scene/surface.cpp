@@ -109,23 +109,22 @@ void mend(Mesh& mesh, Work& work) {
 // Which parts of a file are in the solid that was made from it: those with most of their faces inside or on
 // it.
 std::vector<char> parts_in(const Mesh& solid, const Mesh& mesh, const Parts& part) {
-    constexpr std::size_t most_looks = 100;  // a part
+    constexpr std::size_t most_samples = 100;  // a part
     const vec3 size = bounds(solid).size();
     const float on = 0.005f * std::max({size.x, size.y, size.z});  // the accuracy of remeshing by voxels
     const Tree tree(solid);
     const WindingNumber winding(tree);
-    std::vector<std::vector<Index>> faces(part.count);
-    for (Index face = 0; face < part.of.size(); ++face) faces[part.of[face]].push_back(face);
+    const std::vector<std::vector<Index>> faces = faces_by(part.of, part.count);
     std::vector<char> in;
     for (const std::vector<Index>& own : faces) {
-        const std::size_t looks = std::min(most_looks, own.size());
+        const std::size_t samples = std::min(most_samples, own.size());
         std::size_t found = 0;
-        for (std::size_t look = 0; look < looks; ++look) {
-            const uvec3 t = mesh.triangles[own[look * own.size() / looks]];
+        for (std::size_t sample = 0; sample < samples; ++sample) {
+            const uvec3 t = mesh.triangles[own[sample * own.size() / samples]];
             const vec3 p = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0f;
             found += tree.distance(p, on) < on || winding.at(dvec3(p)) > 0.5;
         }
-        in.push_back(2 * found > looks);
+        in.push_back(2 * found > samples);
     }
     return in;
 }

@@ -166,25 +166,25 @@ class Walls {
     bool bound(const Mesh& solid, const std::vector<Index>& hollow, double volume) const {
         double around = 0, area = 0;
         std::vector<double> area_by(part_.count);
-        const std::size_t looks = std::min(most_looks, hollow.size());
-        for (std::size_t look = 0; look < looks; ++look) {
-            const uvec3 t = solid.triangles[hollow[look * hollow.size() / looks]];
+        const std::size_t samples = std::min(most_samples, hollow.size());
+        for (std::size_t sample = 0; sample < samples; ++sample) {
+            const uvec3 t = solid.triangles[hollow[sample * hollow.size() / samples]];
             const vec3 a = solid.positions[t.x], b = solid.positions[t.y], c = solid.positions[t.z],
                        middle = (a + b + c) / 3.0f, way = glm::cross(b - a, c - a);
             const double own = face_area(solid, t);
             area += own;
-            if (own > 0) around += winding_.at(dvec3(middle + 0.5f * glm::normalize(way))) / double(looks);
+            if (own > 0) around += winding_.at(dvec3(middle + 0.5f * glm::normalize(way))) / double(samples);
             const Index nearest = all_.nearest(middle, farthest).face;
             if (nearest != none) area_by[part_.of[nearest]] += own;
         }
         if (around < -0.5) return true;
-        const double whole = area * double(hollow.size()) / double(looks);
+        const double whole = area * double(hollow.size()) / double(samples);
         const bool wide = 3 * volume > least_radius * whole;  // as for a ball
         return wide && *std::max_element(area_by.begin(), area_by.end()) > 0.75 * area;
     }
 
  private:
-    static constexpr std::size_t most_looks = 200;
+    static constexpr std::size_t most_samples = 200;
     static constexpr float farthest = 4;       // voxels, from a wall to the surface made of it
     static constexpr double least_radius = 2;  // voxels
 
@@ -229,7 +229,7 @@ bool is_kept(const Volume& depths, dvec3 point) {
 
 // Finds the faces of `mesh` with no inner voxel next to them, by samples about a voxel apart.
 void find_thin(const Mesh& mesh, const Volume& depths, Remade& made) {
-    constexpr int most_looks = 64;  // along a side
+    constexpr int most_samples = 64;  // along a side
     double area = 0, lost = 0;
     for (uvec3 t : mesh.triangles) {
         const dvec3 a(mesh.positions[t.x]), ab = dvec3(mesh.positions[t.y]) - a,
@@ -238,16 +238,16 @@ void find_thin(const Mesh& mesh, const Volume& depths, Remade& made) {
         if (!(own > 0)) continue;
         const dvec3 inward = -0.5 * glm::normalize(glm::cross(ab, ac));
         const double longest = std::max({glm::length(ab), glm::length(ac), glm::length(ac - ab)});
-        const int n = std::clamp(int(longest), 1, most_looks);
-        int looks = 0, missed = 0;
+        const int n = std::clamp(int(longest), 1, most_samples);
+        int samples = 0, missed = 0;
         for (int i = 0; i < n; ++i)
-            for (int j = 0; i + j < n; ++j, ++looks) {
+            for (int j = 0; i + j < n; ++j, ++samples) {
                 const dvec3 point = a + (i + 1.0 / 3) / n * ab + (j + 1.0 / 3) / n * ac;
                 missed += !is_kept(depths, point) && !is_kept(depths, point + inward);
             }
         area += own;
-        lost += own * missed / looks;
-        made.thin_faces += 2 * missed > looks;
+        lost += own * missed / samples;
+        made.thin_faces += 2 * missed > samples;
     }
     if (made.thin_faces > 0) made.thin = lost / area;
 }

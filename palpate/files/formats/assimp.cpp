@@ -124,7 +124,7 @@ std::string with_unit_axes(std::string_view text) {
         text.remove_prefix(std::min(end, text.size()));
         dvec3 axis(0);
         std::string_view left = numbers;
-        for (int k = 0; k < 3; ++k) axis[k] = spelled(word(left)).value_or(0);
+        for (int k = 0; k < 3; ++k) axis[k] = parse_number(word(left)).value_or(0);
         const double length = glm::length(axis);
         if (length > 0 && std::isfinite(length) && std::abs(length - 1) > 1e-6)
             corrected += fmt::format("{:.9f} {:.9f} {:.9f}{}", axis.x / length, axis.y / length,
@@ -156,7 +156,7 @@ double dxf_unit(std::string_view text) {
     if (at == std::string_view::npos) return 0;
     text.remove_prefix(at);
     word(text), word(text);
-    const double code = spelled(word(text)).value_or(0);
+    const double code = parse_number(word(text)).value_or(0);
     return is_whole(code, 0, double(std::size(metres)) - 1) ? metres[std::size_t(code)] : 0;
 }
 
@@ -172,7 +172,7 @@ double stated_unit(const Source& source, const std::string& format, const aiScen
         return *unit;
     }
     if (format == ".dae") {
-        const double meter = spelled(in_xml(source, "unit", "meter").value_or("1")).value_or(1);
+        const double meter = parse_number(in_xml(source, "unit", "meter").value_or("1")).value_or(1);
         return meter > 0 && std::isfinite(meter) ? meter : 1;
     }
     return format == ".dxf" ? dxf_unit(source.whole()) : 0;

@@ -33,7 +33,7 @@ std::optional<std::string> next_line(std::istream& in, std::size_t& left, const 
     return line.empty() ? std::nullopt : std::optional(line);
 }
 
-bool is_list(const std::string& value) { return small_letters(value).starts_with("list"); }
+bool is_list(const std::string& value) { return lower_case(value).starts_with("list"); }
 
 // "slice%03d.raw" with a number in its place. Nothing if the pattern holds anything but one number.
 std::optional<std::string> numbered(const std::string& pattern, int number) {
@@ -53,7 +53,7 @@ std::vector<std::string> of_pattern(const std::string& data, const std::filesyst
     const std::string pattern(word(rest));
     double range[3] = {0, 0, 1};  // from, to, step
     for (double& number : range)
-        if (const auto value = spelled(word(rest))) number = *value;
+        if (const auto value = parse_number(word(rest))) number = *value;
     const auto is_number = [](double n) { return is_whole(n, -largest_number, largest_number); };
     std::vector<std::string> names;
     const double count = (range[1] - range[0]) / range[2] + 1;
@@ -87,7 +87,7 @@ std::vector<double> Fields::numbers(const std::string& name, std::size_t least,
     const std::string text = (*this)[name];
     std::string_view rest = text;
     for (std::string_view one = word(rest); !one.empty(); one = word(rest)) {
-        const auto number = spelled(one);
+        const auto number = parse_number(one);
         if (!number) refuse(fmt::format("{} instead of a number in \"{}\"", in_quotes(one), name), path);
         numbers.push_back(*number);
     }
@@ -112,7 +112,7 @@ Fields read_fields(std::istream& in, char separator, const std::string& last,
         const std::size_t at = text.find(separator);
         if (text.starts_with('#') || at == std::string::npos) continue;
         if (separator == ':' && text.substr(at).starts_with(":=")) continue;  // the user's own
-        std::string name = small_letters(text.substr(0, at));
+        std::string name = lower_case(text.substr(0, at));
         std::erase_if(name, [](char c) { return c == ' ' || c == '\t'; });
         fields.all[name] = trimmed(text.substr(at + 1));
         list = (name == "datafile" || name == "elementdatafile") && is_list(fields.all[name]);

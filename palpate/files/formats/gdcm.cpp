@@ -91,7 +91,7 @@ std::vector<double> numbers(std::string text) {
     std::vector<double> all;
     while (!rest.empty()) {
         std::string_view one = until('\\', rest);
-        const auto number = spelled(word(one, " "));
+        const auto number = parse_number(word(one, " "));
         if (!number || !std::isfinite(*number)) return {};
         all.push_back(*number);
     }

@@ -18,7 +18,7 @@ Number metaimage_number(std::string type, const std::filesystem::path& path) {
         {"met_ushort", Number::uint16},     {"met_int", Number::int32},     {"met_uint", Number::uint32},
         {"met_long", Number::int32},        {"met_ulong", Number::uint32},  {"met_long_long", Number::int64},
         {"met_ulong_long", Number::uint64}, {"met_float", Number::float32}, {"met_double", Number::float64}};
-    type = small_letters(type);
+    type = lower_case(type);
     if (type.ends_with("_array")) type.resize(type.size() - 6);
     for (auto [name, number] : all)
         if (type == name) return number;
@@ -90,7 +90,7 @@ Layout layout_of(const Fields& fields, const std::filesystem::path& path) {
 Reading read_metaimage(const std::filesystem::path& path) {
     const auto in = open_file(path);
     const Fields fields = read_fields(*in, '=', "elementdatafile", path);
-    if (const std::string kind = fields["objecttype"]; !kind.empty() && small_letters(kind) != "image")
+    if (const std::string kind = fields["objecttype"]; !kind.empty() && lower_case(kind) != "image")
         refuse("not an image (its ObjectType is " + in_quotes(kind) + ")", path,
                "give a file whose ObjectType is Image");
     const std::string data = fields["elementdatafile"];
@@ -110,12 +110,12 @@ Reading read_metaimage(const std::filesystem::path& path) {
     if (volumes > 1)
         reading.notes.push_back(fmt::format("{} volumes in one file: the first is taken", volumes));
     reading.grid = place_of(fields, dims, count, reading.notes, path);
-    reading.unit = named_unit(small_letters(fields["distanceunits"]), reading.notes);
+    reading.unit = named_unit(lower_case(fields["distanceunits"]), reading.notes);
 
     Layout layout = layout_of(fields, path);
     layout.voxels = layout.run = reading.grid.count();
     layout.every = std::size_t(volumes);
-    if (small_letters(data) == "local") {
+    if (lower_case(data) == "local") {
         reading.values = read_voxels(*in, layout, path);
     } else {
         const auto header = fields.numbers("headersize", 1, path);

@@ -28,7 +28,7 @@ struct Axis {
 std::vector<std::string> words(const std::string& text) {
     std::istringstream in(text);
     std::vector<std::string> all;
-    for (std::string one; in >> one;) all.push_back(small_letters(one));
+    for (std::string one; in >> one;) all.push_back(lower_case(one));
     return all;
 }
 
@@ -38,7 +38,7 @@ std::vector<std::string> quoted(const std::string& text) {
     for (std::size_t from = text.find('"'); from != std::string::npos;) {
         const std::size_t to = text.find('"', from + 1);
         if (to == std::string::npos) break;
-        all.push_back(small_letters(text.substr(from + 1, to - from - 1)));
+        all.push_back(lower_case(text.substr(from + 1, to - from - 1)));
         from = text.find('"', to + 1);
     }
     return all;
@@ -58,7 +58,7 @@ std::vector<std::optional<dvec3>> vectors(const std::string& text, const std::fi
         std::string_view rest = std::string_view(text).substr(at + 1, end - at - 1);
         std::vector<double> numbers;
         for (auto one = word(rest, " ,"); !one.empty(); one = word(rest, " ,"))
-            numbers.push_back(spelled(one).value_or(unknown));
+            numbers.push_back(parse_number(one).value_or(unknown));
         if (end == std::string::npos || numbers.size() != 3)
             refuse("a place or direction that is not of three numbers", path,
                    "give a volume of three dimensions");
@@ -156,7 +156,7 @@ Grid place_of(const Fields& fields, const std::vector<Axis>& axes, const std::ve
     }
     if (guessed) notes.push_back(no_spacing);
     if (const auto at = vectors(fields["spaceorigin"], path); at.size() == 1 && at[0]) origin = *at[0];
-    const dvec3 turn = turn_of(small_letters(fields["space"]), notes);
+    const dvec3 turn = turn_of(lower_case(fields["space"]), notes);
     return checked_grid(dims, dmat3(turn * steps[0], turn * steps[1], turn * steps[2]), turn * origin, path);
 }
 
@@ -226,8 +226,8 @@ std::int64_t skipped(const Fields& fields, const char* name, std::int64_t least,
 Layout layout_of(const Fields& fields, std::vector<std::string>& notes, const std::filesystem::path& path) {
     Layout layout;
     layout.number = nrrd_number(fields["type"], path);
-    layout.packing = packing_of(small_letters(fields["encoding"]), path);
-    layout.big_endian = small_letters(fields["endian"]) == "big";
+    layout.packing = packing_of(lower_case(fields["encoding"]), path);
+    layout.big_endian = lower_case(fields["endian"]) == "big";
     if (!fields.has("endian") && bytes_of(layout.number) > 1 && layout.packing != Packing::text)
         notes.push_back("it does not state its byte order: little-endian is assumed");
     layout.skipped_lines = skipped(fields, "lineskip", 0, path);

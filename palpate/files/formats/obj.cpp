@@ -67,7 +67,7 @@ class Obj {
 
     // Attributes that do not affect the shape need not be finite: they are dropped later.
     static double any_number(std::string_view& words) {
-        return spelled(word(words, space)).value_or(std::numeric_limits<double>::quiet_NaN());
+        return parse_number(word(words, space)).value_or(std::numeric_limits<double>::quiet_NaN());
     }
 
     static dvec3 normal(std::string_view words) {
@@ -107,7 +107,7 @@ class Obj {
     // OBJ counts from 1, or backwards from the last one so far. An invalid index becomes `nowhere`.
     static constexpr Index nowhere = ~Index(0);
     static Index index(std::string_view text, std::size_t so_far) {
-        const double number = spelled(text).value_or(0);
+        const double number = parse_number(text).value_or(0);
         if (!is_whole(number, -double(so_far), 0x7fffffffp0) || number == 0) return nowhere;
         return Index(number < 0 ? double(so_far) + number : number - 1);
     }

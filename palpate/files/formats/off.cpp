@@ -13,7 +13,7 @@ class Off {
 
     Draft read() {
         source_.skip_mark();
-        if (!spelled(peek())) read_header();  // to begin with the counts is allowed
+        if (!parse_number(peek())) read_header();  // to begin with the counts is allowed
         const double vertices = count("vertices"), faces = count("faces");
         read_edges(vertices, vertices + faces);
         for (double i = 0; i < vertices; ++i) {
@@ -137,7 +137,7 @@ class Off {
     }
 
     double count(std::string_view what) {
-        const auto number = spelled(next());
+        const auto number = parse_number(next());
         if (!number || !is_whole(*number, 0, 0xfffffffep0))
             source_.broken(fmt::format("no number of {}", what));
         return *number;

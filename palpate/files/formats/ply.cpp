@@ -112,7 +112,7 @@ class Ply {
         if (!ascii() && format_ != "binary_little_endian" && format_ != "binary_big_endian")
             source_.broken(fmt::format("the unknown PLY format {}", in_quotes(format_)));
         const std::string_view name = word(text);
-        const auto count = spelled(word(text));
+        const auto count = parse_number(word(text));
         if (!count || !is_whole(*count, 0, std::min(double(source_.rest.size()), 0x7fffffffp0)))
             source_.broken(fmt::format("an impossible count of the element {} promised", in_quotes(name)));
         elements_.push_back({name, *count, {}});
@@ -202,8 +202,8 @@ class Ply {
         const std::string_view text = ascii() ? word(source_.rest) : source_.rest.substr(0, kind.bytes);
         if (text.size() < (ascii() ? 1 : kind.bytes)) bad("promised, but the file is truncated");
         if (ascii()) {
-            if (const auto value = spelled(text)) return *value;
-            source_.misspelled(text);
+            if (const auto value = parse_number(text)) return *value;
+            source_.not_a_number(text);
         }
         source_.rest.remove_prefix(kind.bytes);
         return kind.load(text.data(), format_ == "binary_big_endian");

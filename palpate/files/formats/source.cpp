@@ -82,17 +82,17 @@ void Source::broken_here(std::string_view what) const {
     broken(fmt::format("{} in line {}", what, lines));
 }
 
-void Source::misspelled(std::string_view word) const {
+void Source::not_a_number(std::string_view word) const {
     std::string point(word);
     std::replace(point.begin(), point.end(), ',', '.');
-    if (point != word && spelled(point))
+    if (point != word && parse_number(point))
         broken("a decimal comma, " + in_quotes(word) + ",", "export it with decimal points");
     broken_here(word.empty() ? "too few numbers" : in_quotes(word) + " instead of a number");
 }
 
 double Source::number(std::string_view word) const {
-    if (const auto value = spelled(word)) return *value;
-    misspelled(word);
+    if (const auto value = parse_number(word)) return *value;
+    not_a_number(word);
 }
 
 std::string_view word(std::string_view& text, std::string_view space) {
@@ -128,7 +128,7 @@ std::string percent_decoded(std::string_view uri) {
     return text;
 }
 
-std::optional<double> spelled(std::string_view word) {
+std::optional<double> parse_number(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = std::numeric_limits<double>::infinity();  // stays infinite if the number is out of range
     const char* const last = word.data() + word.size();
@@ -138,7 +138,7 @@ std::optional<double> spelled(std::string_view word) {
     if (*end != 'd' && *end != 'D') return spelled_by_microsoft(word);
     std::string with_e(word);
     with_e[std::size_t(end - word.data())] = 'e';
-    return with_e.find_first_of("dD") == std::string::npos ? spelled(with_e) : std::nullopt;
+    return with_e.find_first_of("dD") == std::string::npos ? parse_number(with_e) : std::nullopt;
 }
 
 std::string in_quotes(std::string_view text, std::size_t most) {

@@ -37,7 +37,7 @@ class Source {
     [[noreturn]] void broken_here(std::string_view what) const;
 
     /// For a word that should be a number but is not.
-    [[noreturn]] void misspelled(std::string_view word) const;
+    [[noreturn]] void not_a_number(std::string_view word) const;
 
     /// The finite or infinite number that a word spells. Throws Error if it is not a number.
     double number(std::string_view word) const;
@@ -62,7 +62,7 @@ std::string percent_decoded(std::string_view uri);
 
 /// Parses a whole word as a number, also in the styles of Fortran (1D-3) and Microsoft (-1.#IND); infinite if
 /// it is out of range.
-std::optional<double> spelled(std::string_view word);
+std::optional<double> parse_number(std::string_view word);
 
 inline bool is_whole(double number, double least, double most) {
     return number >= least && number <= most && number == std::floor(number);

@@ -149,7 +149,7 @@ class StlText {
 
     void pass_numbers() {
         std::string_view ahead = source_.rest;
-        for (int k = 0; k < 3 && spelled(word(ahead)); ++k) source_.rest = ahead;
+        for (int k = 0; k < 3 && parse_number(word(ahead)); ++k) source_.rest = ahead;
     }
 
     // Skips the rest of the line, or up to its first facet.

@@ -151,7 +151,7 @@ class ThreeMf {
                 source_.broken(fmt::format("{} in line {} of {}", what, element.line, in_quotes(file)));
             };
             const auto number = [&](std::string_view name) {
-                const auto value = spelled(element[name]);
+                const auto value = parse_number(element[name]);
                 if (!value) bad(fmt::format("{} = {}", name, in_quotes(element[name])));
                 return *value;
             };
@@ -246,7 +246,7 @@ class ThreeMf {
         Transform transform;
         if (text.empty()) return transform;
         for (int k = 0; k < 12; ++k) {
-            const auto value = spelled(word(text));
+            const auto value = parse_number(word(text));
             if (!value) bad("a transform that is not 12 numbers");
             (k < 9 ? transform.linear[k / 3] : transform.translation)[k % 3] = *value;
         }

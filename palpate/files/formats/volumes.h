@@ -20,7 +20,7 @@ constexpr double most_voxels = 1 << 30;
 
 /// A file's name, without its folders, in small letters.
 std::string lower_name(const std::filesystem::path& path);
-std::string small_letters(std::string text);
+std::string lower_case(std::string text);
 
 /// Throws Error unless these are the sizes of a three-dimensional volume of at most 2^30 voxels.
 ivec3 checked_sizes(const std::vector<double>& sizes, const std::filesystem::path& path);

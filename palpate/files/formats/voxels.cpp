@@ -190,7 +190,7 @@ void Voxels::take_text(std::istream& in, const std::filesystem::path& file) {
     for (std::size_t there = 0; there < promised && !full(); ++there) {
         if (!(in >> std::setw(64) >> word))
             refuse_truncated(double(there), double(promised), "numbers", file);
-        const auto number = spelled(word);
+        const auto number = parse_number(word);
         if (!number) refuse(in_quotes(word) + " instead of a number", file);
         make_room(1);
         if (seen_++ / layout_.run % layout_.every == 0)
