@@ -2,8 +2,8 @@
 #include "palpate/base/files.h"
 #include "palpate/files/ending.h"
 #include "palpate/files/formats/budget.h"
+#include "palpate/files/formats/foreign.h"
 #include "palpate/files/formats/formats.h"
-#include "palpate/files/formats/stranger.h"
 #include "palpate/files/read.h"
 
 #include <fmt/format.h>
@@ -74,7 +74,7 @@ std::string_view ending_by(std::string_view bytes) {
 
 void refuse_other_kinds(std::string_view bytes, const std::string& format, const std::string& name) {
     if (bytes.empty()) throw Error("an empty file", name, "get the file again");
-    refuse_strangers(bytes, name);
+    refuse_foreign(bytes, name);
     for (const auto& [start, what, remedy, at] : volume_signs)
         if (bytes.substr(std::min(at, bytes.size())).starts_with(start))
             throw Error(fmt::format("{}, not a mesh,", what), name, remedy);

@@ -1,6 +1,6 @@
 #include "palpate/base/error.h"
 #include "palpate/files/ending.h"
-#include "palpate/files/formats/stranger.h"
+#include "palpate/files/formats/foreign.h"
 #include "palpate/files/formats/units.h"
 #include "palpate/files/formats/volumes.h"
 #include "palpate/files/read.h"
@@ -117,7 +117,7 @@ Reading read_anywhere(const std::filesystem::path& path) {
         std::ifstream(path, std::ios::binary).read(first.data(), std::streamsize(first.size()));
         if (std::filesystem::file_size(path, unreadable) == 0)
             refuse("an empty file", path, "get the file again");
-        refuse_strangers(first, path.string());
+        refuse_foreign(first, path.string());
     }
     if (format && std::filesystem::is_directory(path))
         refuse("a folder where a file was expected", path, "name a file");

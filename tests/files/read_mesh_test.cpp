@@ -359,12 +359,12 @@ TEST(ReadMesh, WhatAFileIsStandsInItsBytes) {
         EXPECT_TRUE(same_bytes(parse_mesh(bytes, name, {}, &notes).positions, mesh.positions));
     ASSERT_EQ(notes.size(), 2u);
     EXPECT_HAS(notes[0], "read as .ply, because its first bytes say so");
-    const std::pair<const char*, const char*> strangers[] = {
+    const std::pair<const char*, const char*> foreign_files[] = {
         {"<!DOCTYPE html><html>", "a web page"},
         {"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"},
         {"PK\3\4", "a ZIP archive"},
         {"BZh91AY", "bzip2"}};
-    for (const auto& [start, what] : strangers)
+    for (const auto& [start, what] : foreign_files)
         for (const char* name : {"a.stl", "a.obj", "a.ply", "a.glb", "a.fbx"})
             EXPECT_HAS(parse_error(name, start), what) << name;
 }

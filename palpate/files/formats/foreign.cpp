@@ -1,15 +1,15 @@
-#include "palpate/files/formats/stranger.h"
+#include "palpate/files/formats/foreign.h"
 
 #include "palpate/base/error.h"
 
 namespace palpate {
 namespace {
 
-struct Stranger {
+struct ForeignFile {
     std::string_view start, what, remedy;
 };
 
-constexpr Stranger strangers[] = {
+constexpr ForeignFile foreign_files[] = {
     {"version https://git-lfs", "a Git LFS pointer, not the file itself,", "fetch it with git lfs pull"},
     {"<!DOCTYPE html", "a web page, not the file itself,", "download the file itself"},
     {"<!doctype html", "a web page, not the file itself,", "download the file itself"},
@@ -25,8 +25,8 @@ constexpr Stranger strangers[] = {
 
 }  // namespace
 
-void refuse_strangers(std::string_view bytes, const std::string& name) {
-    for (const auto& [start, what, remedy] : strangers)
+void refuse_foreign(std::string_view bytes, const std::string& name) {
+    for (const auto& [start, what, remedy] : foreign_files)
         if (bytes.starts_with(start)) throw Error(what, name, remedy);
 }
 
