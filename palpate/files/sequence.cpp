@@ -67,9 +67,9 @@ class Numbered : public Sequence {
 // ---- one file ----
 
 // A file whose header is known only at the end: until then its body is in a temporary file.
-class Headless {
+class HeaderLast {
  public:
-    explicit Headless(const std::filesystem::path& path)
+    explicit HeaderLast(const std::filesystem::path& path)
         : path_(path),
           waiting_(path.string() + ".body"),
           stream_(std::fopen(waiting_.name().c_str(), "w+b")) {
@@ -160,7 +160,7 @@ class Cache : public Sequence {
 
     Mesh mesh_;
     std::filesystem::path path_;
-    Headless file_;
+    HeaderLast file_;
     std::vector<float> times_;
 };
 
@@ -210,7 +210,7 @@ class Morphs : public Sequence {
     std::filesystem::path path_;
     GltfContents contents_;
     Mesh rest_;
-    Headless file_;
+    HeaderLast file_;
 };
 
 // Checks the pictures for any of the formats.

@@ -168,8 +168,8 @@ void add_extrusion(Draft& draft, const Extruded& shape) {
     if (shape.end_cap && !loop) cap(first + (rings - 1) * corners, false);
 }
 
-void add_terrain(Draft& draft, std::span<const double> heights, std::size_t columns, double x_spacing,
-                 double z_spacing) {
+void add_elevation_grid(Draft& draft, std::span<const double> heights, std::size_t columns, double x_spacing,
+                        double z_spacing) {
     const Index first = Index(draft.positions.size()), width = Index(columns);
     const std::size_t rows = columns == 0 ? 0 : heights.size() / columns;
     for (std::size_t i = 0; i < rows * columns; ++i)

@@ -19,8 +19,8 @@ struct Turned {
 void add_turned(Draft& draft, const Turned& shape);
 
 /// An elevation grid over x and z: `heights` in rows of `columns` along x.
-void add_terrain(Draft& draft, std::span<const double> heights, std::size_t columns, double x_spacing,
-                 double z_spacing);
+void add_elevation_grid(Draft& draft, std::span<const double> heights, std::size_t columns, double x_spacing,
+                        double z_spacing);
 
 /// An extrusion: a cross section, in x and z, that is swept along a spine, perpendicular to it. At each point
 /// of the spine it is scaled and then rotated; if fewer are given, the last ones repeat. A curve that begins

@@ -323,7 +323,7 @@ class Vrml {
         if (is_in(face_sets, type)) return read_faces(type);
         if (type == "Box" || type == "Sphere" || type == "Cylinder" || type == "Cone")
             return read_solid(type);
-        if (type == "ElevationGrid") return read_terrain();
+        if (type == "ElevationGrid") return read_elevation_grid();
         if (type == "Extrusion") return read_extrusion();
         if (is_in(groups, type) || is_in(transforms, type)) return read_group(type);
         if (is_geometry) others_.insert(type);
@@ -420,8 +420,7 @@ class Vrml {
         if (!by_corner)
             for (std::size_t i = 0; i < count; ++i)
                 draft_.positions.push_back(point(i)), draft_.uvs.push_back(uv(double(i)));
-        std::map<std::pair<double, double>, Index>
-            known;              // by the indices of a point and a texture coordinate
+        std::map<std::pair<double, double>, Index> known;  // by point and texture coordinate
         indices.push_back(-1);  // which ends a face, and may be left out after the last
         Index size = 0;
         for (std::size_t i = 0; i < indices.size(); ++i) {
@@ -435,10 +434,11 @@ class Vrml {
                     fmt::format("a face naming point {} of {}, counted from 0,", index, count));
             Index vertex = Index(double(first) + index);
             if (by_corner) {
-                const double place = i < uv_indices.size() && uv_indices[i] >= 0 ? uv_indices[i] : -1;
-                const auto [at, is_new] = known.try_emplace({index, place}, Index(draft_.positions.size()));
+                const double uv_index = i < uv_indices.size() && uv_indices[i] >= 0 ? uv_indices[i] : -1;
+                const auto [at, is_new] =
+                    known.try_emplace({index, uv_index}, Index(draft_.positions.size()));
                 if (is_new)
-                    draft_.positions.push_back(point(std::size_t(index))), draft_.uvs.push_back(uv(place));
+                    draft_.positions.push_back(point(std::size_t(index))), draft_.uvs.push_back(uv(uv_index));
                 vertex = at->second;
             }
             draft_.corners.push_back(vertex);
@@ -530,7 +530,7 @@ class Vrml {
         if (!ccw) turn_over(start);
     }
 
-    void read_terrain() {
+    void read_elevation_grid() {
         Numbers heights;
         double columns = 0, rows = 0, x_spacing = 1, z_spacing = 1;
         bool ccw = true;
@@ -555,7 +555,7 @@ class Vrml {
         if (!is_whole(columns, 0, most) || !is_whole(rows, 0, most) || columns * rows != most)
             source_.broken_here(fmt::format("a grid of {} x {} with {} heights", columns, rows, most));
         const Mark start = mark();
-        add_terrain(draft_, heights, std::size_t(columns), x_spacing, z_spacing);
+        add_elevation_grid(draft_, heights, std::size_t(columns), x_spacing, z_spacing);
         draft_.uvs.resize(draft_.positions.size(), dvec2(nothing));
         if (!ccw) turn_over(start);
     }
