@@ -519,7 +519,8 @@ TEST_F(ReadSeries, ReadsTheSlicesOfOneFile) {
             EXPECT_LE(glm::distance(volume.origin, vec3(-0.01f, -0.02f, 0.03f)), 1e-8f);
             for (int z = 0; z < 5; ++z) EXPECT_EQ(volume.at(1, 0, z), float(1000 * z + 100 * z + 1));
             EXPECT_EQ(notes.size(), std::size_t(twice)) << all_notes();
-            if (twice) EXPECT_HAS(all_notes(), "2 volumes in one place, distinguished by TemporalPositionIndex");
+            if (twice)
+                EXPECT_HAS(all_notes(), "2 volumes in one place, distinguished by TemporalPositionIndex");
         }
     }
 }
