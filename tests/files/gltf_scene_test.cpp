@@ -98,7 +98,7 @@ TEST(Gltf, MorphTargetsCountByTheirDefaultWeights) {
     expect_box(file.read(), vec3(0), vec3(2, 3, 5), 30);
     file.json["accessors"].back()["count"] = 7;
     file.node()["weights"] = {0, 1};
-    EXPECT_HAS(file.refused(), "morph target of another number");
+    EXPECT_HAS(file.refused(), "morph target with another number");
 }
 
 TEST(Gltf, InstancesStandWhereTheirListsSay) {

@@ -118,7 +118,7 @@ TEST_F(ReadSeries, LeavesOutWhatIsNoSliceAndSaysSo) {
     } others[] = {{"report.dcm", report.bytes(), "colours (RGB)"},
                   {"film.dcm", film.bytes(), "3 pictures in one file"},
                   {"outlines.dcm", outlines.bytes(), "RT Structure Set"},
-                  {"index.dcm", index.bytes(), "no picture"},
+                  {"index.dcm", index.bytes(), "not an image"},
                   {"mosaic.dcm", mosaic.bytes(), "a Siemens mosaic"},
                   {"cut.dcm", cut, "truncated"},
                   {"noise.dcm", std::string(128, 'x') + "DICM" + std::string(1000, 'x'), "damaged"}};

@@ -316,7 +316,7 @@ TEST(ReadVolume, KnowsAGzipByItsContent) {
     EXPECT_TRUE(is_volume(scratch / "SHOUTED.NII.GZ"));
 }
 
-// Every number of a header and of the voxels in the other order of bytes.
+// Every number of a header and of the voxels in the other byte order.
 TEST(ReadVolume, ReadsEitherOrderOfBytes) {
     Scratch scratch;
     std::string bytes = small().matrix(straight).bytes();
@@ -425,7 +425,7 @@ TEST(ReadVolume, SaysThatAFileIsEmptyOrCutOffInItsHeader) {
     EXPECT_HAS(volume_error(scratch / "a.nii", ""), "an empty file");
     for (const std::size_t size : {4, 100, 347})
         EXPECT_HAS(volume_error(scratch / "a.nii", small().bytes().substr(0, size)),
-                   "header that is cut off");
+                   "a truncated NIfTI header");
     EXPECT_HAS(volume_error(scratch / "a.nii", "solid of another kind"), "no NIfTI header");
 }
 

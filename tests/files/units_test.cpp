@@ -64,7 +64,7 @@ TEST(ThreeMf, PartsStandWhereTheirTransformsSay) {
     EXPECT_HAS(refused(model(one, "<item objectid='7'/>")), "\"7\" that is missing");
     EXPECT_HAS(
         refused(model("<object id='1'><components><component objectid='1'/></components></object>", built)),
-        "put together of themselves");
+        "an object that contains itself");
 }
 
 TEST(ThreeMf, ObjectsInFilesOfTheirOwn) {

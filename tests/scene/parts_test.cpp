@@ -58,7 +58,7 @@ TEST(Scene, ClothThatDoesNotFit) {
     expect_body(grid + weight + "youngs_modulus = 10\n", {"youngs_modulus", "springs"});
     expect_body(grid + weight + "stiffness = 10\n", {"stiffness", "springs"});
     expect_body(grid + weight + "springs = 3\n", {"springs", "table"});
-    expect_body(grid + weight + "bending = 1e-5\n", {"bending", "no sheet", "flexion"});
+    expect_body(grid + weight + "bending = 1e-5\n", {"bending", "not a sheet", "flexion"});
     expect_body("surface = \"x.ply\"\nsheet = true\nbending = -1\n" + weight, {"bending", "negative"});
     expect_body(grid + weight + "springs = { bending = 3 }\n", {"bending", "springs"});
     expect_body(grid + weight + "springs = { structural = 0 }\n", {"structural"});
