@@ -117,7 +117,7 @@ TEST(Gltf, InstancesStandWhereTheirListsSay) {
     file.node()["translation"] = {0, 100, 0};
     expect_box(file.read(), vec3(0, 100, -5), vec3(22, 106, 5), 30 + 60 + 30);
     places["SCALE"] = file.vectors({{1, 1, 1}});
-    EXPECT_HAS(file.refused(), "different number");
+    EXPECT_HAS(file.refused(), "differ in number");
 }
 
 // As normals serve the positions, which are units along the axes: mirrored ones point back through it.

@@ -479,7 +479,7 @@ TEST_F(ReadSeries, ReadsANuclearMedicineTomogram) {
     EXPECT_EQ(down.values[0], 300) << "the last lies lowest";
     EXPECT_LE(std::abs(down.origin.z - 0.018f), 1e-7f);
     put(folder / "nm.dcm", file.bytes());
-    EXPECT_HAS(error(folder / "nm.dcm"), "4 nuclear medicine frames in one file that does not say");
+    EXPECT_HAS(error(folder / "nm.dcm"), "4 nuclear medicine frames in one file that does not state");
     EXPECT_HAS(error(folder / "nm.dcm"), "dcm2niix");
 }
 

@@ -417,8 +417,8 @@ TEST(Stl, TextAsStrangersWriteIt) {
     expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\ncolor 0.7 0.7 0.7\nfacet"),
                  "ignored 1 line outside of any facet, the first with \"color\"");
     expect_brick("a.stl", stl_text("solid box\nfacet", "solid box\n# in mm\nfacet"), "the first with \"#\"");
-    expect_brick("a.stl", stl_text("endfacet", "attribute 0 vertex 1 2 3\nendfacet"), "read over 12 lines");
-    expect_brick("a.stl", "# by hand\n\n" + stl_text(), "read over 1 line");
+    expect_brick("a.stl", stl_text("endfacet", "attribute 0 vertex 1 2 3\nendfacet"), "ignored 12 lines");
+    expect_brick("a.stl", "# by hand\n\n" + stl_text(), "ignored 1 line");
     expect_brick("a.stl", stl_text("endsolid box\n", ""), "ends without \"endsolid\"");
     std::string in_one_line = stl_text();
     std::replace(in_one_line.begin(), in_one_line.end(), '\n', ' ');

@@ -124,7 +124,7 @@ TEST(Scene, MapsAndShade) {
     const std::string map = "colour_map = \"cow.png\"\n";
     expect_words(refusal(cow + map + "faces = 500\n"), {"body cow", "faces", "texture coordinates"});
     expect_words(refusal(cow + map + "smooth = 3\n"), {"smooth", "texture coordinates"});
-    expect_words(refusal(small + map), {"body cube", "no texture coordinates"});
+    expect_words(refusal(small + map), {"body cube", "without texture coordinates"});
     // Another surface does not wear what was made for this one.
     EXPECT_FALSE(parse_scene(cow + map, "test.toml", ".", std::vector<Change>{"body.cow.surface=horse.obj"})
                      .bodies[0]
