@@ -97,7 +97,7 @@ TEST(Refusal, OfNumbersOfWhichNothingCanBeMade) {
     expect_refused("factor", [&] { strengthen(body, std::vector<float>(body.count(), none)); });
     expect_refused("rows", [] { normal_map(std::vector<float>(7), 3); });
     expect_refused("threads", [] { weave({0, 4}); });
-    expect_refused("bars", [] { histogram(Volume{}, 10); });
+    expect_refused("bins", [] { histogram(Volume{}, 10); });
     expect_refused("values", [] { isosurface(Volume{}, 0.5f); });
     expect_refused("pixels", [] { write_png({2, 2, {1, 2, 3}}, "small.png"); });
     for (int members : {0, -1, 100'000}) expect_refused("members", [&] { Team team(members); });
