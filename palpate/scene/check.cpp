@@ -80,6 +80,10 @@ void check_springs(const BodyRecipe& body, const Require& require) {
         require.one_of({"youngs_modulus", "stiffness"},
                        "give it one: brain has about 1e4 Pa; or give the N/m of each spring");
     }
+    require("poisson", body.material.youngs_modulus > 0 || !require.has("poisson"),
+            "poisson without youngs_modulus", "give the modulus too, in Pa");
+    require("links", body.material.poisson == 0 || !require.has("links"),
+            "links beside poisson, where it has no effect", "remove it");
     require("bending", body.sheet || !require.has("bending"),
             "bending of a body that is not a sheet of triangles",
             "give cloth flexion springs, or use sheet = true with a surface");

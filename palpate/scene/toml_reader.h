@@ -376,6 +376,7 @@ class Reader {
         {"position", "move"},     {"translate", "move"},
         {"translation", "move"},  {"fixed", "pin"},
         {"E", "youngs_modulus"},  {"young", "youngs_modulus"},
+        {"nu", "poisson"},        {"poisson_ratio", "poisson"},
         {"rho", "density"},       {"k", "stiffness"},
         {"viscosity", "damping"}, {"fov", "angle"},
         {"target", "look_at"},    {"dt", "step"},
