@@ -37,7 +37,7 @@ std::string quoted(const std::filesystem::path& file) {
 }
 
 // It is scaled to 0.2 m, which suits the step and the hand, and stiff enough to bear its own weight without
-// folding (50 kPa: softer than rubber, stiffer than a liver).
+// folding (50 kPa: softer than rubber, stiffer than a liver). Cells of tissue come back from any shape.
 SceneText scene_around(const char* kind, const std::filesystem::path& file) {
     return {fmt::format(R"([[body]]
 name = "it"
@@ -46,6 +46,7 @@ size = 0.2
 centre = true
 nodes = 5000
 youngs_modulus = 50000
+poisson = 0.45
 density = 1000
 damping = 2
 pin = {{ below = 0.1 }}

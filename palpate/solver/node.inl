@@ -131,8 +131,8 @@ FN Real3 tip_force(Real3 position, int i) {
     Real part = min(Real(pass.cell_size) / Real(t.place.w), Real(1.0f));
     Real inner = part * Real(pass.cell_size * pass.cell_size);
     Real pushed = select(area() > Real(0.0f), area(), inner);
-    Real out = select(area() > Real(0.0f), cover(), Real(0.0f));
-    Real depth = max(Real(t.place.w) + out - square * inverse, Real(0.0f));
+    Real carried = select(area() > Real(0.0f), cover(), Real(0.0f));
+    Real depth = max(Real(t.place.w) + carried - square * inverse, Real(0.0f));
     return (Real(t.push.x) * pushed * depth * inverse) * away;
 }
 

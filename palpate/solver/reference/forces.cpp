@@ -17,10 +17,11 @@ struct Forces::Inside {
     const Pass pass = make_pass(body, {});
     const std::vector<dvec3> none = std::vector<dvec3>(body.count(), dvec3(0));  // velocities
 
-    void require(std::size_t length) const {
-        if (length == body.count()) return;
-        throw Error(fmt::format("a list of {} for {} nodes", length, body.count()), name_in_errors(body),
-                    "hand in one for each");
+    void require(std::initializer_list<std::size_t> lengths) const {
+        for (std::size_t length : lengths)
+            if (length != body.count())
+                throw Error(fmt::format("a list of {} for {} nodes", length, body.count()),
+                            name_in_errors(body), "hand in one for each");
     }
 
     Physics physics(const Now& now, std::size_t node, std::span<const Physics::Eight> cells = {}) const {
@@ -30,9 +31,6 @@ struct Forces::Inside {
     // of_cell(c) of each cell of tissue, then of_node(physics) of each node into `into`: on all processors.
     template <class OfCell, class OfNode>
     void of_all(const Now& now, std::span<dvec3> into, OfCell of_cell, OfNode of_node) const {
-        require(now.positions.size());
-        require(now.velocities.size());
-        require(into.size());
         std::vector<Physics::Eight> cells(around.tissue ? body.cells.size() : 0);
         parallel_for(cells.size(), 1024, [&](std::size_t c) { cells[c] = of_cell(c); });
         parallel_for(into.size(), 4096, [&](std::size_t i) {
@@ -47,7 +45,8 @@ Forces::Forces(const Body& body) : in_((check(body), new Inside{body})) {}
 Forces::~Forces() = default;
 
 void Forces::at(std::span<const dvec3> positions, std::span<dvec3> forces) const {
-    const Now now(positions, in_->none);
+    in_->require({positions.size(), forces.size()});
+    const Now now(positions.data(), in_->none.data());
     in_->of_all(
         now, forces, [&](std::size_t c) { return reference::cell_pushes(in_->around, in_->pass, now, c); },
         [](Physics& physics, const Physics::Node& node) { return physics.elastic_force(node.position); });
@@ -55,7 +54,8 @@ void Forces::at(std::span<const dvec3> positions, std::span<dvec3> forces) const
 
 void Forces::stiffness_times(std::span<const dvec3> positions, std::span<const dvec3> displacement,
                              std::span<dvec3> forces) const {
-    const Now now(positions, displacement);
+    in_->require({positions.size(), displacement.size(), forces.size()});
+    const Now now(positions.data(), displacement.data());
     in_->of_all(
         now, forces,
         [&](std::size_t c) {
@@ -69,8 +69,8 @@ void Forces::stiffness_times(std::span<const dvec3> positions, std::span<const d
 }
 
 double Forces::energy(std::span<const dvec3> positions) const {
-    in_->require(positions.size());
-    const Now now(positions, in_->none);
+    in_->require({positions.size()});
+    const Now now(positions.data(), in_->none.data());
     double sum = 0;
     for (std::size_t i = 0; i < positions.size(); ++i)
         sum += in_->physics(now, i).elastic_energy(positions[i]);

@@ -41,13 +41,13 @@ struct NodeStates {
     std::vector<glm::vec<3, Real>> positions, velocities;
 };
 
-/// The same where somebody else keeps them.
+/// The same where they are kept elsewhere.
 template <class Real>
 struct NodesNow {
-    std::span<const glm::vec<3, Real>> positions, velocities;
+    const glm::vec<3, Real>*positions, *velocities;
 
-    NodesNow(const NodeStates<Real>& states) : positions(states.positions), velocities(states.velocities) {}
-    NodesNow(std::span<const glm::vec<3, Real>> places, std::span<const glm::vec<3, Real>> speeds)
+    NodesNow(const NodeStates<Real>& states) : NodesNow(states.positions.data(), states.velocities.data()) {}
+    NodesNow(const glm::vec<3, Real>* places, const glm::vec<3, Real>* speeds)
         : positions(places), velocities(speeds) {}
 };
 
@@ -63,6 +63,7 @@ struct NodePhysics {
     const Pass& pass;
     const NodesNow<Real> now;
     int id;
+    int links;
     const Tie* ties;                   // this node's springs,
     std::span<const OwnHinge> hinges;  // and hinges
     Real outside_area, outside_cover;
@@ -123,7 +124,7 @@ struct NodePhysics {
 #define FN [[gnu::always_inline]]  // GCC leaves the longer ones out, which costs half the speed
 #define ASIDE
 #define UNROLL
-#define LINKS world.springs.width
+#define LINKS links
 #define HINGES (with_hinges ? int(hinges.size()) : 0)
 #define CELLS (world.tissue ? 8 : 0)
 #define OWN_CELLS
@@ -155,6 +156,7 @@ NodePhysics<Real, with_hinges> see(const Surroundings& all, const Pass& pass, co
             pass,
             now,
             int(i),
+            all.springs.width,
             all.springs.ties.data() + i * std::size_t(all.springs.width),
             with_hinges ? std::span(all.hinges[i]) : std::span<const OwnHinge>(),
             Real(all.body.area[i]),
