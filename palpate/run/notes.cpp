@@ -224,14 +224,26 @@ std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
     return notes;
 }
 
+namespace {
+
+// Whether it is a solid of springs that could be tissue.
+bool is_of_springs(const Scene& scene, const std::string& body) {
+    return std::ranges::any_of(scene.bodies, [&](const BodyRecipe& recipe) {
+        return recipe.name == body && recipe.material.youngs_modulus > 0 && recipe.material.poisson == 0;
+    });
+}
+
+}  // namespace
+
 std::vector<std::string> notes_after(const Scene& scene, const Models& made, const Report& report,
                                      const Play& play) {
     std::vector<std::string> notes;
     for (const Report::Body& body : report.bodies)
         if (body.inverted_cells > 0)
-            notes.push_back(
-                fmt::format("body {}: up to {} of {} cells were inside out; {}, or use more nodes", body.name,
-                            body.inverted_cells, body.cells, how_to_ask_less(scene, report)));
+            notes.push_back(fmt::format(
+                "body {}: up to {} of {} cells were inside out; {}, or use more nodes{}", body.name,
+                body.inverted_cells, body.cells, how_to_ask_less(scene, report),
+                is_of_springs(scene, body.name) ? ", or give it poisson = 0.45: such cells turn back" : ""));
     look_for_lost_bodies(scene, made, play, notes);
     look_at_tools(scene, report, notes);
     look_at_thin_obstacles(scene, made, report, notes);

@@ -152,7 +152,6 @@ struct GridPhysics : NodeAccess<AnyPass> {
     using WithPass = AnyPass;
     using Quiet = GridPhysics<Links, bits_per_link, along_axes, with_strength, with_cells, QuietPass>;
     static constexpr bool has_cells = with_cells;
-    struct Eight;
     USE_NODE_ACCESS(AnyPass)
     static constexpr int per_word = bits_per_link == 1 ? 32 : 10;
     static constexpr int words = (Links::count + per_word - 1) / per_word;
@@ -259,7 +258,7 @@ struct GridPhysics : NodeAccess<AnyPass> {
     }
     FN Pack cell_weight(int) const { return load(body.cells.weights + id); }
 
-    // What the cells around have been found to do, where there are some.
+    // What the cells around them do, which CellsAhead has worked out.
     template <class OfNode>
     FN Pack3 cells_force(const OfNode&) const {
         const std::ptrdiff_t size = task.cells.size, array = size + std::ptrdiff_t(lanes());
@@ -306,8 +305,7 @@ template <class AnyPass = Pass, bool with_hinges = false, bool with_cells = fals
 struct TablePhysics : NodeAccess<AnyPass> {
     using WithPass = AnyPass;
     using Quiet = TablePhysics<QuietPass, with_hinges, with_cells>;
-    static constexpr bool has_cells = false;  // none that are worked out beforehand
-    struct Eight;
+    static constexpr bool has_cells = false;  // none that are worked out ahead of their nodes
     USE_NODE_ACCESS(AnyPass)
     struct Constants {
         explicit Constants(const Pass&) {}
@@ -346,7 +344,7 @@ struct TablePhysics : NodeAccess<AnyPass> {
     }
     FN Pack longest(int l) const { return load(whole(l).longest); }
 
-    // As CellMemory writes them.
+    // As cell_records() writes them.
     struct CellRecord {
         std::uint32_t corners[8][HWY_LANES(float)];
         float weight[HWY_LANES(float)];
