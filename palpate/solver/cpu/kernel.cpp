@@ -449,7 +449,8 @@ class CellsAhead {
             while (s_.body.runs[run_].first + s_.body.runs[run_].count <= next_) ++run_;
             Physics physics(s_, pass_, constants_, at, run_, next_);
             if constexpr (Physics::has_cells)
-                write(physics.damped_cell_forces(load_node<Physics>(s_.body, at, next_), 0));
+                write(physics.on_corners(
+                    physics.damped_cell_forces(load_node<Physics>(s_.body, at, next_), 0)));
         }
     }
 

@@ -61,9 +61,9 @@ void Forces::stiffness_times(std::span<const dvec3> positions, std::span<const d
         [&](std::size_t c) {
             const auto lowest = std::size_t(in_->body.cells[c][0]);
             Physics physics = in_->physics(now, lowest);
-            return physics.cell_stiffness_times(physics.cell_corners(positions[lowest], 0),
-                                                physics.cell_passing(displacement[lowest], 0),
-                                                physics.cell_weight(0));
+            return physics.on_corners(physics.cell_stiffness_times(
+                physics.cell_corners(positions[lowest], 0), physics.cell_passing(displacement[lowest], 0),
+                physics.cell_weight(0)));
         },
         [](Physics& physics, const Physics::Node& node) { return physics.elastic_stiffness_times(node); });
 }

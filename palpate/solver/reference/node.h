@@ -177,8 +177,8 @@ template <class Real, bool with_hinges = true>
 typename NodePhysics<Real, with_hinges>::Eight cell_pushes(const Surroundings& all, const Pass& pass,
                                                            const NodesNow<Real>& now, std::size_t c) {
     const auto lowest = std::size_t(all.body.cells[c][0]);
-    return see<Real, with_hinges>(all, pass, now, lowest)
-        .damped_cell_forces(load<Real, with_hinges>(all, now, lowest), 0);
+    NodePhysics<Real, with_hinges> physics = see<Real, with_hinges>(all, pass, now, lowest);
+    return physics.on_corners(physics.damped_cell_forces(load<Real, with_hinges>(all, now, lowest), 0));
 }
 
 }  // namespace palpate::reference

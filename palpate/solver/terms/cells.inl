@@ -29,7 +29,7 @@ FN Eight modes(Eight e) {
     return e;
 }
 
-// The transpose: what the modes feel, on the corners.
+// The transpose: what is given by modes, of which the first is 0, on all corners; or on one.
 FN Eight on_corners(Eight e) {
     UNROLL for (int bit = 1; bit < 8; bit *= 2)
         UNROLL for (int k = 0; k < 8; ++k)
@@ -39,6 +39,12 @@ FN Eight on_corners(Eight e) {
                 e.c[k + bit] = a + b;
             }
     return e;
+}
+
+FN Real3 on_corner(Eight e, int k) {
+    Real x = Real(float((k & 1) * 2 - 1)), y = Real(float((k >> 1 & 1) * 2 - 1)), z = Real(float((k >> 2) * 2 - 1));
+    return x * e.c[1] + y * e.c[2] + z * e.c[4] + (x * y) * e.c[3] + (x * z) * e.c[5] + (y * z) * e.c[6] +
+           (x * y * z) * e.c[7];
 }
 
 // F by its columns, and what the energy is made of.
@@ -65,7 +71,7 @@ FN Deformation deformation(Eight mode) {
 
 FN Real eased(Real drawn) { return Real(1.0f) / (Real(1.0f) + Real(4.0f) * drawn * drawn); }
 
-// What the mean edges feel, and the hourglasses by a spring each, on the corners.
+// What the mean edges feel, and beside it the hourglasses with a spring each.
 FN Eight with_hourglasses(Eight push, Eight mode, Real weight) {
     Real bend = Real(pass.bend) * weight;
     push.c[0] = Real3(0.0f, 0.0f, 0.0f);
@@ -73,10 +79,10 @@ FN Eight with_hourglasses(Eight push, Eight mode, Real weight) {
     push.c[5] = bend * mode.c[5];
     push.c[6] = bend * mode.c[6];
     push.c[7] = (Real(pass.twist) * weight) * mode.c[7];
-    return on_corners(push);
+    return push;
 }
 
-// N, that a cell puts on its corners, which may count from any point.
+// N, by modes: what a cell does to its corners, which may count from any point.
 FN Eight cell_forces(Eight corners, Real weight) {
     Eight mode = modes(corners), push;
     Deformation now = deformation(mode);
@@ -92,7 +98,7 @@ FN Eight cell_forces(Eight corners, Real weight) {
     return with_hourglasses(push, mode, Real(-1.0f) * weight);
 }
 
-// N: how the forces of a cell resist a displacement of its corners, m.
+// N, by modes: how a cell resists a displacement of its corners, m.
 FN Eight cell_stiffness_times(Eight corners, Eight displacement, Real weight) {
     Eight change = modes(displacement), push;
     Deformation now = deformation(modes(corners));
@@ -137,7 +143,7 @@ FN Eight cell_passing(Real3 velocity, int k) {
     return corners;
 }
 
-// N, that the cell of which this node is corner k puts on its corners, with the damping that is proportional to stiffness.
+// N, by modes: what the cell of which this node is corner k does, with the damping that is proportional to stiffness.
 FN Eight damped_cell_forces(Node node, int k) {
     Eight corners = cell_corners(node.position, k);
     Eight force = cell_forces(corners, cell_weight(k));
@@ -151,7 +157,7 @@ FN Eight damped_cell_forces(Node node, int k) {
 #ifndef OWN_CELLS
 FN Real3 cells_force(Node node) {
     Real3 force = Real3(0.0f, 0.0f, 0.0f);
-    for (int k = 0; k < CELLS; ++k) force += damped_cell_forces(node, k).c[k];
+    for (int k = 0; k < CELLS; ++k) force += on_corner(damped_cell_forces(node, k), k);
     return force;
 }
 #endif
