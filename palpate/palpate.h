@@ -35,6 +35,7 @@
 #include "palpate/body/select.h"
 #include "palpate/body/simulation.h"
 #include "palpate/body/stencils.h"
+#include "palpate/body/tissues.h"
 #include "palpate/files/image_file.h"
 #include "palpate/files/read.h"
 #include "palpate/files/sequence.h"
