@@ -28,8 +28,9 @@ bool leaves_shapes(const Change& change) {
     if (key.starts_with("collider."))  // planes and balls are drawn from their present values
         return last == "friction" || last == "margin" || key.find(".plane.") != std::string::npos ||
                key.find(".sphere.") != std::string::npos;
-    for (const char* one : {"youngs_modulus", "poisson", "stiffness", "springs", "structural", "shear",
-                            "flexion", "bending", "density", "mass", "damping", "link_damping", "pin"})
+    for (const char* one :
+         {"youngs_modulus", "poisson", "stiffness", "springs", "structural", "shear", "flexion", "bending",
+          "density", "mass", "damping", "link_damping", "pin", "tissue"})
         if (last == one) return key.starts_with("body.");
     return false;
 }

@@ -67,6 +67,15 @@ void check(const Region& region, const BodyRecipe& body, const SceneSource& sour
             "a stiffness in a body of tissue", "give it youngs_modulus or a factor");
 }
 
+// A named tissue is made of cells of a solid and has a modulus.
+void check_tissue(const BodyRecipe& body, const Require& require) {
+    require("tissue", !body.is_cloth(), "cloth of a tissue", "give it springs and a density in kg/m²");
+    for (const char* key : {"stiffness", "springs", "bending", "links"})
+        require(key, !require.has(key), std::string(key) + " beside tissue",
+                "remove one: a tissue has no springs");
+    require("mass", !require.has("density") || !require.has("mass"), "both density and mass", "remove one");
+}
+
 // The stiffness of springs: a modulus, one stiffness, or one for each kind.
 void check_springs(const BodyRecipe& body, const Require& require) {
     if (body.springs || body.is_cloth()) {
@@ -163,9 +172,13 @@ void check(const BodyRecipe& body, const SceneSource& source) {
                 "cage is not at least 2 along each axis (a last 1 is a sheet) and at most 10 million nodes",
                 "change it");
     }
-    check_springs(body, require);
-    require.one_of({"density", "mass"}, body.is_cloth() ? "give it one: a shirt has about 0.15 kg/m²"
-                                                        : "give it one: water has 1000 kg/m³");
+    if (require.has("tissue")) {
+        check_tissue(body, require);
+    } else {
+        check_springs(body, require);
+        require.one_of({"density", "mass"}, body.is_cloth() ? "give it one: a shirt has about 0.15 kg/m²"
+                                                            : "give it one: water has 1000 kg/m³");
+    }
     if (body.dims || body.cloth) check_grid(body, require);
     check_maps(body, require);
     check(body.pin, "pin.", require);

@@ -1,4 +1,5 @@
 #include "palpate/body/influences.h"
+#include "palpate/body/tissues.h"
 #include "palpate/scene/check.h"
 #include "palpate/scene/scene.h"
 #include "palpate/scene/toml_reader.h"
@@ -127,7 +128,17 @@ void read_surface(Reader& read, BodyRecipe& body) {
     read.table("touch", [&](Reader& inside) { read_fields(inside, body.feel); });
 }
 
+// The material of a named tissue, of which the body may say otherwise. Its mass takes the place of a density.
+void read_tissue(Reader& read, Material& material) {
+    std::string name;
+    read("tissue", name);
+    if (name.empty()) return;
+    material = tissue_named(name, read.where(*read.get("tissue"))).material();
+    if (read.has("mass")) material.density = 0;
+}
+
 void read_material(Reader& read, BodyRecipe& body) {
+    read_tissue(read, body.material);
     read("youngs_modulus", body.material.youngs_modulus, modulus);
     read("poisson", body.material.poisson,
          between(0.01, 0.499, "", "organs have 0.45 to 0.49; without it the body is of springs"));
@@ -414,8 +425,12 @@ std::vector<std::string> target(const Change& change) {
     return split(change.substr(0, change.find('=')), '.');
 }
 
-// Removes the keys that exclude a changed one.
+// Removes the keys that exclude a changed one; a new tissue removes the numbers given instead of its own.
 void remove_excluded(toml::table& table, const std::string& key) {
+    if (key == "tissue")
+        for (const char* other :
+             {"youngs_modulus", "poisson", "stiffness", "springs", "links", "density", "mass", "damping"})
+            table.erase(other);
     const std::vector<std::string_view> choices[] = {{"density", "mass"},
                                                      {"youngs_modulus", "stiffness", "springs", "factor"},
                                                      {"nodes", "spacing"},
@@ -433,6 +448,11 @@ bool names_source(const Change& change) {
     constexpr std::string_view sources[] = {"volume", "surface", "dims", "cloth"};
     return words.size() == 3 && (words[0] == "body" || words[0] == "surface") &&
            std::ranges::count(sources, words[2]) > 0;
+}
+
+bool names_tissue(const Change& change) {
+    const std::vector<std::string> words = target(change);
+    return words.size() == 3 && words[0] == "body" && words[2] == "tissue";
 }
 
 // The names of tables, and the numbers of those without one: "skin, 2".
@@ -567,9 +587,10 @@ toml::table changed_table(const std::string& text, const SceneSource& source,
         const int line = int(error.source().begin.line);
         source.fail(line, std::string(error.description()), advice_on(text, line));
     }
-    // New sources come first, because they remove the keys of the old ones.
+    // New sources and tissues come first, because they remove the keys of the old ones.
     std::vector<Change> ordered(changes.begin(), changes.end());
-    std::stable_partition(ordered.begin(), ordered.end(), names_source);
+    std::stable_partition(ordered.begin(), ordered.end(),
+                          [](const Change& change) { return names_source(change) || names_tissue(change); });
     for (const Change& change : ordered) apply(root, change);
     return root;
 }

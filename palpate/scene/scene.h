@@ -104,7 +104,8 @@ struct BodyRecipe {
     float spacing = 0;           // m
     std::optional<ivec3> cage;   // instead: a plain box with this many nodes around the surface; a final 1
                                  // makes a sheet
-    Material material;           // its fields are keys of the body itself; of cloth, density is in kg/m²
+    Material material;           // its fields are keys of the body itself, and the key `tissue` gives those
+                                 // that are missing (body/tissues.h); of cloth, density is in kg/m²
     std::optional<SpringKinds> springs;  // of cloth, or of the volume of 2012 with dims
     Choice pin;                          // nodes to pin
     float bending = 0;                   // N m, of a sheet (ClothSettings)

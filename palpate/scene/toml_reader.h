@@ -370,18 +370,29 @@ class Reader {
     }
 
     // Common names of our keys in other programs.
-    static constexpr std::pair<std::string_view, const char*> other_words[] = {
-        {"mesh", "surface"},      {"file", "surface"},
-        {"model", "surface"},     {"scale", "size"},
-        {"position", "move"},     {"translate", "move"},
-        {"translation", "move"},  {"fixed", "pin"},
-        {"E", "youngs_modulus"},  {"young", "youngs_modulus"},
-        {"nu", "poisson"},        {"poisson_ratio", "poisson"},
-        {"rho", "density"},       {"k", "stiffness"},
-        {"viscosity", "damping"}, {"fov", "angle"},
-        {"target", "look_at"},    {"dt", "step"},
-        {"g", "gravity"},         {"end", "duration"},
-        {"solver", "integrator"}};
+    static constexpr std::pair<std::string_view, const char*> other_words[] = {{"mesh", "surface"},
+                                                                               {"file", "surface"},
+                                                                               {"model", "surface"},
+                                                                               {"scale", "size"},
+                                                                               {"position", "move"},
+                                                                               {"translate", "move"},
+                                                                               {"translation", "move"},
+                                                                               {"fixed", "pin"},
+                                                                               {"E", "youngs_modulus"},
+                                                                               {"young", "youngs_modulus"},
+                                                                               {"material", "tissue"},
+                                                                               {"nu", "poisson"},
+                                                                               {"poisson_ratio", "poisson"},
+                                                                               {"poissons_ratio", "poisson"},
+                                                                               {"rho", "density"},
+                                                                               {"k", "stiffness"},
+                                                                               {"viscosity", "damping"},
+                                                                               {"fov", "angle"},
+                                                                               {"target", "look_at"},
+                                                                               {"dt", "step"},
+                                                                               {"g", "gravity"},
+                                                                               {"end", "duration"},
+                                                                               {"solver", "integrator"}};
 
     // The remedy for a key that this table does not have.
     std::string advice(const std::string& name) const {

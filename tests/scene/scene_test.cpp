@@ -2,6 +2,7 @@
 #include "palpate/scene/scene.h"
 
 #include "palpate/base/error.h"
+#include "palpate/body/tissues.h"
 #include "tests/scene/parsing.h"
 
 #include <gtest/gtest.h>
@@ -196,6 +197,44 @@ TEST(Scene, ColoursOf255AreExplained) {
     expect_words(refusal(small + "[light]\ncolour = [-1, 0, 0]\n"), {"light.colour is negative", "line 9"});
 }
 
+const std::string bare = "[[body]]\nname = \"cube\"\ndims = [4, 4, 4]\nspacing = 0.01\n";
+
+TEST(Scene, ATissueIsAMaterial) {
+    const Material brain = tissue_named("brain").material();
+    EXPECT_EQ(parse(bare + "tissue = \"brain\"\n").bodies[0].material, brain);
+    Material own = brain;
+    own.youngs_modulus = 3000;
+    own.damping = 0;
+    EXPECT_EQ(parse(bare + "damping = 0\nyoungs_modulus = 3000\ntissue = \"brain\"\n").bodies[0].material,
+              own);
+    Material heavy = brain;
+    heavy.density = 0;
+    heavy.mass = 2;
+    EXPECT_EQ(parse(bare + "tissue = \"brain\"\nmass = 2\n").bodies[0].material, heavy);
+}
+
+TEST(Scene, ATissueHasItsNameAndNoSprings) {
+    expect_words(refusal(bare + "tissue = \"brian\"\n"),
+                 {"no tissue \"brian\"", "test.toml, line 5", "did you mean \"brain\"?", "liver, kidney"});
+    expect_words(refusal(bare + "tissue = 3\n"), {"cube.tissue is 3, not a text"});
+    expect_words(refusal(bare + "material = \"brain\"\n"), {"did you mean \"tissue\"?"});
+    for (const std::string other : {"stiffness = 3", "springs = { structural = 1 }", "links = \"equal\""})
+        expect_words(refusal(bare + "tissue = \"brain\"\n" + other + "\n"),
+                     {"beside tissue", "line 6", "remove one"});
+    expect_words(refusal(bare + "tissue = \"brain\"\ndensity = 900\nmass = 1\n"), {"both density and mass"});
+    expect_words(refusal("[[body]]\ncloth = [4, 4]\nspacing = 0.01\ntissue = \"skin\"\n"),
+                 {"cloth of a tissue", "line 4"});
+}
+
+// "small" has a modulus and a density.
+TEST(Scene, AChangeOfTissueTakesAwayTheOldMaterial) {
+    const Material skin = tissue_named("skin").material();
+    EXPECT_EQ(parse(small, {"body.cube.tissue=skin"}).bodies[0].material, skin);
+    Material light = skin;
+    light.density = 900;
+    EXPECT_EQ(parse(small, {"body.cube.density=900", "body.cube.tissue=skin"}).bodies[0].material, light);
+}
+
 TEST(Scene, OfSeveralKeysOne) {
     expect_words(refusal(small + "mass = 1\n"), {"cube", "exactly one of density and mass",
                                                  "both density and mass", "line 8", "remove one"});
@@ -210,7 +249,8 @@ TEST(Scene, OfSeveralKeysOne) {
 }
 
 TEST(Scene, KeysThatBelongElsewhere) {
-    expect_words(refusal(small + "nu = 0.45\n"), {"\"nu\" of body.cube", "line 8", "did you mean \"poisson\"?"});
+    expect_words(refusal(small + "nu = 0.45\n"),
+                 {"\"nu\" of body.cube", "line 8", "did you mean \"poisson\"?"});
     expect_words(refusal(small + "poisson = 0.5\n"), {"poisson", "line 8", "0.45 to 0.49"});
     expect_words(refusal("[simulation]\n" + small + "gravity = [0, 0, 0]\n"),
                  {"did you mean simulation.gravity?"});
