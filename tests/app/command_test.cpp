@@ -3,6 +3,7 @@
 
 #include "palpate/base/files.h"
 #include "palpate/base/pipe.h"
+#include "palpate/body/tissues.h"
 #include "palpate/files/write.h"
 #include "tests/scratch.h"
 #include "tests/shapes.h"
@@ -73,6 +74,9 @@ TEST(Command, ListsWhatThereIs) {
     EXPECT_NE(palpate("list mappings").output.find("trilinear"), std::string::npos);
     EXPECT_NE(palpate("list devices").output.find("script"), std::string::npos);
     EXPECT_NE(palpate("list scenes").output.find("brain"), std::string::npos);
+    const std::string listed = "\n" + palpate("list tissues").output;
+    for (const Tissue& one : tissues())
+        EXPECT_NE(listed.find(fmt::format("\n{} ", one.name)), std::string::npos) << one.name;
 }
 
 TEST(Command, RunsAndReports) {
