@@ -216,7 +216,7 @@ TEST(Scene, ATissueIsAMaterial) {
 TEST(Scene, ATissueHasItsNameAndNoSprings) {
     expect_words(refusal(bare + "tissue = \"brian\"\n"),
                  {"no tissue \"brian\"", "test.toml, line 5", "did you mean \"brain\"?", "liver, kidney"});
-    expect_words(refusal(bare + "tissue = 3\n"), {"cube.tissue is 3, not a text"});
+    expect_words(refusal(bare + "tissue = 3\n"), {"cube.tissue is 3, not a string"});
     expect_words(refusal(bare + "material = \"brain\"\n"), {"did you mean \"tissue\"?"});
     for (const std::string other : {"stiffness = 3", "springs = { structural = 1 }", "links = \"equal\""})
         expect_words(refusal(bare + "tissue = \"brain\"\n" + other + "\n"),

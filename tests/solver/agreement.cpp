@@ -128,7 +128,7 @@ std::vector<NamedBody> odd_bodies() {
         {"solid box", lattice({6, 4, 5}, 0.01f, solid)},
         {"battered solid organ with strength", battered(with_strength(solid_organ, 12), 11)},
         {"turned solid organ", turned(solid_organ)},
-        {"stitched solid", stitched(lattice({4, 5, 3}, 0.01f, solid))},
+        {"stitched solid", stitched(lattice({5, 6, 4}, 0.01f, solid))},
         {"cloth with hinges", hinged(cloth({12, 7}, 0.01f, linen), 2e-4f)}};
 }
 
