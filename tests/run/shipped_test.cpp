@@ -127,7 +127,8 @@ TEST(Dropped, ClosedMeshesComeToRest) {
         float way = 0;
         for (std::size_t i = 0; i < earlier.size(); ++i)
             way = std::max(way, glm::distance(earlier[i], play.skins()[0].positions[i]));
-        EXPECT_LE(way, 2e-4f);  // m in a twelfth of a second; the rod, which its weight bends over, swings longest
+        EXPECT_LE(way,
+                  2e-4f);  // m in a twelfth of a second; the rod, which its weight bends over, swings longest
     }
 }
 
