@@ -45,8 +45,19 @@ std::pair<Body, std::size_t> without_light_nodes(Body body) {
     return {std::move(body), std::size_t(std::ranges::count_if(free, [&](float one) { return one > most; }))};
 }
 
-// The same body with no spring much stiffer than most.
-Body without_stiff_springs(Body body) {
+TissueCells* tissue_in(Body& body) {
+    for (Term& term : body.terms)
+        if (auto* cells = std::get_if<TissueCells>(&term)) return cells;
+    return nullptr;
+}
+
+// The same body with no spring or cell much stiffer than most.
+Body without_stiff_parts(Body body) {
+    if (TissueCells* cells = tissue_in(body)) {
+        const float most = float(uneven) * median(cells->weights);
+        for (float& weight : cells->weights) weight = std::min(weight, most);
+        return body;
+    }
     body = without_grid(std::move(body));
     std::vector<Spring>& springs = std::get<ListedSprings>(body.terms[0]).springs;
     std::vector<float> all;
@@ -94,7 +105,11 @@ std::vector<Candidate> candidates(const Body& body, const Causes& causes) {
     if (const Body limp = without_bending(body); limp.terms.size() < body.terms.size())
         all.push_back({"lower its bending or make its triangles larger", at_most(highest_frequency(limp))});
     all.push_back({"make its stiffest springs or regions softer",
-                   at_most(highest_frequency(without_stiff_springs(body)))});
+                   at_most(highest_frequency(without_stiff_parts(body)))});
+    if (Body usual = body; TissueCells* cells = tissue_in(usual)) {
+        cells->poisson = std::min(cells->poisson, 0.45f);
+        all.push_back({"use a Poisson's ratio of 0.45", at_most(highest_frequency(usual))});
+    }
     return all;
 }
 

@@ -24,7 +24,7 @@ const char* const material = "use a softer material";
 void expect_only(const std::string& said, const std::string& words) {
     for (const char* one :
          {"link_damping", "lower damping", "that press", "that drag", "weigh more alike", "stiffest springs",
-          "lower its bending", material, "choose verlet", "ask for longer steps"})
+          "lower its bending", "Poisson's ratio", material, "choose verlet", "ask for longer steps"})
         EXPECT_EQ(words.find(one) != words.npos, said.find(one) != said.npos) << one << ": " << said;
 }
 
@@ -81,6 +81,17 @@ TEST(ShortSteps, Bending) {
     EXPECT_EQ(refusal(body), "");
     body.terms.push_back(bending(body, 100));
     expect_only(refusal(body), "lower its bending");
+}
+
+TEST(ShortSteps, Tissue) {
+    Material stiff{.youngs_modulus = 5e4f, .poisson = 0.499f, .density = 1000};
+    expect_only(refusal(lattice({5, 5, 5}, 0.001f, stiff)), "Poisson's ratio");
+    stiff.poisson = 0.45f;
+    Body body = lattice({7, 7, 7}, 0.001f, stiff);
+    EXPECT_EQ(refusal(body), "");
+    for (Term& term : body.terms)
+        if (auto* cells = std::get_if<TissueCells>(&term)) cells->weights[20] = 1e3f;
+    expect_only(refusal(body), "stiffest springs");
 }
 
 TEST(ShortSteps, TheMaterialItselfWhereNothingElseIs) {
