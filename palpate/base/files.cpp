@@ -139,7 +139,7 @@ bool can_begin(const std::filesystem::path& path) {
 
 }  // namespace
 
-void check_output(const std::filesystem::path& name, std::string_view ending) {
+void check_output(const std::filesystem::path& name, std::string_view extension) {
     if (name.empty()) return;
     std::error_code error;
     if (std::filesystem::is_directory(name, error))
@@ -148,10 +148,10 @@ void check_output(const std::filesystem::path& name, std::string_view ending) {
     if (is_special(path)) return;
     const std::string has = name.extension().string();
     auto alike = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
-    if (!ending.empty() && !std::ranges::equal(has, ending, alike))
-        throw Error(has.empty() ? "no ending that says its format" : "cannot write \"" + has + "\"",
+    if (!extension.empty() && !std::ranges::equal(has, extension, alike))
+        throw Error(has.empty() ? "no extension to choose a format by" : "cannot write \"" + has + "\"",
                     name.string(),
-                    "name it " + std::filesystem::path(name).replace_extension(ending).string() +
+                    "name it " + std::filesystem::path(name).replace_extension(extension).string() +
                         ", which is its format");
     check_folder(path.parent_path(), path.filename().string());
     if (!can_begin(path))

@@ -44,9 +44,9 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
 void write_text(const std::filesystem::path& path, std::string_view text);
 
 /// Checks before long work that its result can be written: throws Error if the file's folder is missing or
-/// not writable, if a folder has its name, or if its name does not end in `ending` (such as ".svg"). A device
-/// or a pipe may have any name.
-void check_output(const std::filesystem::path& path, std::string_view ending = {});
+/// not writable, if a folder has its name, or if its name does not end in `extension` (such as ".svg"). A
+/// device or a pipe may have any name.
+void check_output(const std::filesystem::path& path, std::string_view extension = {});
 
 /// Throws Error if writing to `output` would replace one of the input files, also under another name of the
 /// same file. A device or a pipe may be both.

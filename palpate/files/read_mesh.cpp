@@ -1,6 +1,6 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/formats/budget.h"
 #include "palpate/files/formats/foreign.h"
 #include "palpate/files/formats/formats.h"
@@ -18,7 +18,7 @@ namespace palpate {
 namespace {
 
 struct Format {
-    std::string_view ending;
+    std::string_view extension;
     Draft (*read)(Source);
 };
 
@@ -43,8 +43,8 @@ constexpr VolumeSign volume_signs[] = {{"NRRD000", "an NRRD volume", "name it .n
 constexpr std::string_view zip = "PK\3\4", gzip = "\x1f\x8b";
 constexpr std::string_view zipped_formats[] = {".3mf", ".3d", ".zae", ".q3o", ".pk3"};
 
-const Format* own_format(std::string_view ending) {
-    const auto found = std::ranges::find(own_formats, ending, &Format::ending);
+const Format* own_format(std::string_view extension) {
+    const auto found = std::ranges::find(own_formats, extension, &Format::extension);
     return found == std::end(own_formats) ? nullptr : found;
 }
 
@@ -55,7 +55,7 @@ constexpr std::pair<std::string_view, std::string_view> signs[] = {
 
 // The same for ambiguous first bytes, with a word that follows soon after them.
 struct Sign {
-    std::string_view start, soon, ending;
+    std::string_view start, soon, extension;
 };
 constexpr Sign longer_signs[] = {{"solid", "facet normal", ".stl"},
                                  {"<?xml", "<X3D", ".x3d"},
@@ -63,12 +63,12 @@ constexpr Sign longer_signs[] = {{"solid", "facet normal", ".stl"},
                                  {"{", "\"asset\"", ".gltf"}};
 
 // The extension that fits a file's first bytes; empty if they may be of any format.
-std::string_view ending_by(std::string_view bytes) {
-    for (const auto& [start, ending] : signs)
-        if (bytes.starts_with(start)) return ending;
-    for (const auto& [start, soon, ending] : longer_signs)
+std::string_view extension_by(std::string_view bytes) {
+    for (const auto& [start, extension] : signs)
+        if (bytes.starts_with(start)) return extension;
+    for (const auto& [start, soon, extension] : longer_signs)
         if (bytes.starts_with(start) && bytes.substr(0, 1000).find(soon) != std::string_view::npos)
-            return ending;
+            return extension;
     return {};
 }
 
@@ -78,7 +78,7 @@ void refuse_other_kinds(std::string_view bytes, const std::string& format, const
     for (const auto& [start, what, remedy, at] : volume_signs)
         if (bytes.substr(std::min(at, bytes.size())).starts_with(start))
             throw Error(fmt::format("{}, not a mesh,", what), name, remedy);
-    if (bytes.starts_with(zip) && ending_by(bytes) != ".3mf" &&
+    if (bytes.starts_with(zip) && extension_by(bytes) != ".3mf" &&
         std::ranges::count(zipped_formats, format) == 0)
         throw Error("a ZIP archive", name, "unpack it first");
 }
@@ -86,12 +86,12 @@ void refuse_other_kinds(std::string_view bytes, const std::string& format, const
 Draft read_draft(const Source& source, const std::string& format) {
     refuse_other_kinds(source.whole(), format, source.name());
     const Format* const named = own_format(format);
-    const std::string_view ending = ending_by(source.whole());
-    const Format* const meant = own_format(ending);
+    const std::string_view extension = extension_by(source.whole());
+    const Format* const meant = own_format(extension);
     if (!meant || (named && named->read == meant->read))
         return named ? named->read(source) : read_with_assimp(source);
     Draft draft = meant->read(source);
-    draft.notes.push_back(fmt::format("read as {}, because its first bytes say so", ending));
+    draft.notes.push_back(fmt::format("read as {}, because its first bytes say so", extension));
     return draft;
 }
 
@@ -99,7 +99,7 @@ bool is_known(const std::string& format) { return own_format(format) || assimp_k
 
 // A file's extension, ignoring a final .gz.
 std::string format_of(const std::filesystem::path& path) {
-    return ending(ending(path) == ".gz" ? path.stem() : path);
+    return extension(extension(path) == ".gz" ? path.stem() : path);
 }
 
 void check_format(const std::string& format, const std::string& name) {
@@ -159,7 +159,7 @@ Mesh read_mesh(const std::filesystem::path& path, std::optional<Units> units,
 
 Mesh parse_mesh(std::string_view bytes, const std::string& name, std::optional<Units> units,
                 std::vector<std::string>* notes) {
-    const std::string format = ending(name);
+    const std::string format = extension(name);
     check_format(format, name);
     try {
         return finish(read_draft(Source(bytes, name), format), units, name, notes);

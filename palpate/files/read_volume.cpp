@@ -1,5 +1,5 @@
 #include "palpate/base/error.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/formats/foreign.h"
 #include "palpate/files/formats/units.h"
 #include "palpate/files/formats/volumes.h"
@@ -93,7 +93,7 @@ double named_unit(const std::string& name, std::vector<std::string>& notes) {
 namespace {
 
 struct Format {
-    const char* ending;
+    const char* extension;
     Reading (*read)(const std::filesystem::path&);
 };
 constexpr Format formats[] = {
@@ -106,7 +106,7 @@ const Format* format_of(const std::filesystem::path& path) {
     std::string name = lower_name(path);
     if (name.ends_with(".gz")) name.resize(name.size() - 3);
     for (const Format& format : formats)
-        if (name.ends_with(format.ending)) return &format;
+        if (name.ends_with(format.extension)) return &format;
     return nullptr;
 }
 
@@ -123,7 +123,7 @@ Reading read_anywhere(const std::filesystem::path& path) {
         refuse("a folder where a file was expected", path, "name a file");
     if (format) return format->read(path);
     if (is_volume(path)) return read_dicom(path);
-    refuse("cannot read the volume format \"" + ending(path) + "\"", path,
+    refuse("cannot read the volume format \"" + extension(path) + "\"", path,
            "use .nii, .hdr and .img, .nrrd, .nhdr, .mha, .mhd or a folder with a DICOM series");
 }
 
@@ -169,7 +169,7 @@ double unit_for(const std::optional<Units>& given, Reading& reading) {
 
 bool is_volume(const std::filesystem::path& path) {
     std::error_code unreadable;
-    return format_of(path) || ending(path) == ".dcm" || is_dicom(path) ||
+    return format_of(path) || extension(path) == ".dcm" || is_dicom(path) ||
            std::filesystem::is_directory(path, unreadable);
 }
 

@@ -3,7 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/files/bytes.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/gltf.h"
 #include "palpate/files/write.h"
 
@@ -51,7 +51,7 @@ class Numbered : public Sequence {
     }
 
     void finish() override {
-        if (ending(path_) != ".vtp") return;
+        if (extension(path_) != ".vtp") return;
         write_text(std::filesystem::path(path_).replace_extension(".pvd"),
                    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
                        list_ + "</Collection>\n</VTKFile>\n");
@@ -136,7 +136,7 @@ class Cache : public Sequence {
     }
 
  private:
-    bool is_mdd() const { return ending(path_) == ".mdd"; }
+    bool is_mdd() const { return extension(path_) == ".mdd"; }
 
     // The format of LightWave: all numbers are big-endian, and the times come before the positions.
     std::string mdd_head() const {
@@ -248,7 +248,7 @@ class Checked : public Sequence {
 enum class Kind { numbered, cache, morphs };
 
 Kind kind_of(const std::filesystem::path& path) {
-    const std::string wanted = ending(path);
+    const std::string wanted = extension(path);
     if (wanted == ".ply" || wanted == ".obj" || wanted == ".stl" || wanted == ".vtp") return Kind::numbered;
     if (wanted == ".pc2" || wanted == ".mdd") return Kind::cache;
     if (wanted == ".glb") return Kind::morphs;

@@ -3,7 +3,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/files/bytes.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/gltf.h"
 
 #include <fmt/format.h>
@@ -106,16 +106,16 @@ std::string vtp(const Mesh& mesh, const std::string& file) {
 }
 
 struct Format {
-    std::string_view ending;
+    std::string_view extension;
     std::string (*text)(const Mesh& mesh, const std::string& file);
 };
 constexpr Format formats[] = {{".ply", ply}, {".obj", obj}, {".stl", stl},
                               {".vtp", vtp}, {".glb", glb}, {".gltf", gltf}};
 
 const Format& format_of(const std::filesystem::path& path) {
-    const std::string wanted = ending(path);
+    const std::string wanted = extension(path);
     const auto* found = std::find_if(std::begin(formats), std::end(formats),
-                                     [&](const Format& format) { return format.ending == wanted; });
+                                     [&](const Format& format) { return format.extension == wanted; });
     if (found == std::end(formats))
         throw Error("cannot write the mesh format \"" + wanted + "\"", path.string(),
                     "use .ply, .obj, .stl, .vtp, .glb or .gltf");

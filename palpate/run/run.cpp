@@ -3,7 +3,7 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/sequence.h"
 #include "palpate/files/write.h"
 #include "palpate/gl/context.h"
@@ -233,9 +233,9 @@ void check_numbers(const RunSettings& settings) {
 // Whether a sequence is a single file, with the mesh at rest in it or beside it; other formats are numbered
 // files.
 bool has_rest_beside(const std::filesystem::path& sequence) {
-    return ending(sequence) == ".pc2" || ending(sequence) == ".mdd";
+    return extension(sequence) == ".pc2" || extension(sequence) == ".mdd";
 }
-bool has_rest_inside(const std::filesystem::path& sequence) { return ending(sequence) == ".glb"; }
+bool has_rest_inside(const std::filesystem::path& sequence) { return extension(sequence) == ".glb"; }
 
 // Throws if an output would replace an input.
 void check_inputs_stay(const Scene& scene, const RunSettings& settings) {

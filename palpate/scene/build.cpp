@@ -6,7 +6,7 @@
 #include "palpate/body/influences.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/image_file.h"
 #include "palpate/files/read.h"
 #include "palpate/mesh/parts.h"
@@ -459,7 +459,7 @@ struct Mistaken {
 
 Mistaken mistaken(const std::string& key, const std::string& name, const std::filesystem::path& file) {
     const bool wants_volume = key == "volume" || key == "labels", wants_surface = key.ends_with("surface");
-    if (ending(file) == ".toml") return {"a scene", "run it by itself, or name a mesh or a volume"};
+    if (extension(file) == ".toml") return {"a scene", "run it by itself, or name a mesh or a volume"};
     if (wants_volume && is_mesh(file))
         return {"a mesh", key == "volume" ? fmt::format("write surface = \"{}\"", name) : "name a volume"};
     if (!wants_surface || is_mesh(file)) return {};

@@ -1,7 +1,7 @@
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
 #include "palpate/base/nearest.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/read.h"
 #include "palpate/scene/scene.h"
 
@@ -65,7 +65,7 @@ SceneText find_scene(const std::string& file_or_name) {
     if (!std::filesystem::exists(file_or_name, error))
         throw Error("no such scene or file", file_or_name, remedy_for_unknown(file_or_name));
     const std::filesystem::path file = file_or_name;
-    const bool is_toml = ending(file) == ".toml";
+    const bool is_toml = extension(file) == ".toml";
     if (!is_toml && is_volume(file)) return scene_around("volume", std::filesystem::absolute(file));
     if (!is_toml && is_mesh(file)) return scene_around("surface", std::filesystem::absolute(file));
     if (std::filesystem::is_directory(file, error))

@@ -14,11 +14,11 @@ constexpr long frames_per_picture = 2;  // of a film: 30 pictures a second
 
 // The first numbered name that is free.
 std::filesystem::path free_name(const Experiment& experiment, const std::filesystem::path& folder,
-                                const std::string& ending) {
+                                const std::string& extension) {
     const std::string stem = std::filesystem::path(experiment.source().name).stem().string();
     std::error_code error;
     for (int number = 1;; ++number) {
-        const std::filesystem::path name = folder / fmt::format("{}-{}{}", stem, number, ending);
+        const std::filesystem::path name = folder / fmt::format("{}-{}{}", stem, number, extension);
         if (!std::filesystem::exists(name, error)) return name;
     }
 }
@@ -38,7 +38,9 @@ Saving::~Saving() {
 
 void Saving::save(Output what, const Experiment& experiment, const std::filesystem::path& folder,
                   const std::function<Image()>& picture) {
-    auto name = [&](const std::string& ending) { return free_name(experiment, folder, ending).string(); };
+    auto name = [&](const std::string& extension) {
+        return free_name(experiment, folder, extension).string();
+    };
     if (what == Output::film) {
         film_ ? end_film() : begin_film(name(".mp4"), picture());
     } else if (what == Output::scene) {

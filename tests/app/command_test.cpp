@@ -345,9 +345,9 @@ TEST(Command, OutputsNeedTheirExtension) {
         expect_one_line(palpate("run box --report /proc/report.json"), {"/proc/report.json", "written to"});
     EXPECT_EQ(scratch.entries(), 1u);
     EXPECT_EQ(palpate("run box --frames 1 --report " + in("R.JSON")).status, 0);
-    expect_one_line(palpate("run box --frames 1 --nodes " + in("nodes")), {"no ending", "nodes.csv"});
-    expect_one_line(palpate("run box --video " + in("v")), {"no ending", "v.mp4"});
-    expect_one_line(palpate("bench cloth --json " + in("b")), {"no ending", "b.json"});
+    expect_one_line(palpate("run box --frames 1 --nodes " + in("nodes")), {"no extension", "nodes.csv"});
+    expect_one_line(palpate("run box --video " + in("v")), {"no extension", "v.mp4"});
+    expect_one_line(palpate("bench cloth --json " + in("b")), {"no extension", "b.json"});
     if (std::filesystem::is_directory("/proc"))
         expect_one_line(palpate("run box --images /proc"), {"/proc", "written to"});
 }

@@ -96,8 +96,8 @@ TEST(Files, MissingPlacesAreNamed) {
     EXPECT_NO_THROW(make_folder(scratch / "a" / "b"));
 }
 
-std::string refusal(const std::filesystem::path& path, const char* ending) {
-    return palpate::refusal([&] { check_output(path, ending); });
+std::string refusal(const std::filesystem::path& path, const char* extension) {
+    return palpate::refusal([&] { check_output(path, extension); });
 }
 
 TEST(Files, OutputsAreCheckedBeforeTheWork) {

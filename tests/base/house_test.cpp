@@ -83,7 +83,7 @@ TEST(House, TheWholeLibraryIsInItsOneHeader) {
         "solver/origin.h",    "solver/cpu/hinges.h",    "base/pipe.h",         "base/pack-inl.h",
         "solver/schedule.h",  "solver/cpu/kernel.h",    "solver/cpu/layout.h", "solver/cpu/body_memory.h",
         "solver/cpu/ties.h",  "body/embedding_parts.h", "body/cells.h",        "body/grid.h",
-        "mesh/corners.h",     "files/ending.h",         "files/bytes.h",       "files/gltf.h",
+        "mesh/corners.h",     "files/extension.h",      "files/bytes.h",       "files/gltf.h",
         "mesh/parts.h",       "scene/check.h",          "scene/toml_reader.h", "solver/pass.h",
         "solver/check.h",     "solver/machine.h",       "solver/pushes.h",     "solver/reference/node.h",
         "scene/thin_walls.h", "solver/short_steps.h",   "mesh/pieces.h",       "mesh/face_pairs.h"};

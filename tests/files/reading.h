@@ -27,7 +27,7 @@ inline void put(const std::filesystem::path& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// Of a file with these bytes and a name of this ending; empty if it is read.
+// Of a file with these bytes and a name of this extension; empty if it is read.
 inline std::string parse_error(const std::string& name, std::string_view bytes) {
     return refusal(name, [&] { parse_mesh(bytes, name, Units::metres); });
 }

@@ -3,7 +3,7 @@
 // like any draft.
 #include "palpate/base/error.h"
 #include "palpate/base/isolated.h"
-#include "palpate/files/ending.h"
+#include "palpate/files/extension.h"
 #include "palpate/files/formats/budget.h"
 #include "palpate/files/formats/formats.h"
 #include "palpate/files/formats/lists.h"
@@ -208,8 +208,8 @@ std::vector<char> as_lines(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-bool assimp_knows(const std::string& ending) {
-    return ending.size() > 1 && Assimp::Importer().IsExtensionSupported(ending);
+bool assimp_knows(const std::string& extension) {
+    return extension.size() > 1 && Assimp::Importer().IsExtensionSupported(extension);
 }
 
 Draft read_with_assimp(const Source& source) {
@@ -219,7 +219,7 @@ Draft read_with_assimp(const Source& source) {
                       remedy = "convert it with another program";
     std::filesystem::path name = std::filesystem::path(source.name()).filename();
     if (name.extension() == ".gz") name.replace_extension();
-    const std::string format = ending(name);
+    const std::string format = extension(name);
     const std::string corrected = format == ".dae" ? with_unit_axes(source.whole()) : "";
     const Written written = isolated("assimp", source.name(), allowance, [&](std::FILE* to) {
         Assimp::Importer importer;

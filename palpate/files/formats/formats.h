@@ -18,7 +18,7 @@ Draft read_vrml_nodes(Source source);  // the same without its header
 Draft read_x3d(Source source);         // X3D as XML
 
 /// Whether assimp has a reader for files with this extension (".fbx").
-bool assimp_knows(const std::string& ending);
+bool assimp_knows(const std::string& extension);
 
 /// Reads the file in a process of its own, by its extension.
 Draft read_with_assimp(const Source& source);

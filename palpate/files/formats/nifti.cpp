@@ -292,14 +292,14 @@ std::int64_t behind_header(const Header& header, std::int64_t offset, std::vecto
 }
 
 // The other file of a pair: the same name with another extension, with or without a final .gz.
-std::filesystem::path partner(const std::filesystem::path& path, std::string ending) {
+std::filesystem::path partner(const std::filesystem::path& path, std::string extension) {
     std::filesystem::path stem = path;
     if (lower_name(stem).ends_with(".gz")) stem.replace_extension();
     for (const bool large : {false, true}) {
         if (large)
-            for (char& c : ending) c = char(std::toupper(static_cast<unsigned char>(c)));
+            for (char& c : extension) c = char(std::toupper(static_cast<unsigned char>(c)));
         for (const char* packed : {"", ".gz"}) {
-            std::filesystem::path other = stem.replace_extension(ending);
+            std::filesystem::path other = stem.replace_extension(extension);
             other += packed;
             if (std::filesystem::exists(other)) return other;
         }
