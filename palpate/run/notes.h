@@ -8,8 +8,8 @@ namespace palpate {
 
 // Warnings for the user of a run: of what is likely to go wrong, and of what probably did.
 
-/// Before it: those of build() (Models::notes); bodies that nothing holds; bodies inside a collider; tips and
-/// obstacles so small that they fit between the nodes.
+/// Before it: those of build() (Models::notes); bodies that nothing holds, or that their own weight deforms
+/// much; bodies inside a collider; tips and obstacles so small that they fit between the nodes.
 std::vector<std::string> notes_before(const Scene& scene, const Models& made);
 
 /// After it: inverted cells, bodies that flew away, tools that touched nothing, obstacles so thin that nodes

@@ -245,6 +245,18 @@ TEST(Notes, WhatNothingHolds) {
         EXPECT_FALSE(has_note(run_for(weak + more, 1), "nothing holds it")) << more;
 }
 
+TEST(Notes, ABodyThatCannotHoldItself) {
+    std::string soft = weak + "pin = { below = 0 }\n";
+    EXPECT_FALSE(has_note(run_for(soft, 1), "its own weight"));
+    soft.replace(soft.find("3e5"), 3, "1e3");
+    const Report report = run_for(soft, 1);
+    EXPECT_TRUE(has_note(report, "cube: its own weight deforms it by about 25 % of its height"));
+    EXPECT_TRUE(has_note(report, "give it youngs_modulus = 2.5e+03 Pa"));
+    EXPECT_FALSE(has_note(run_for(soft + "[simulation]\ngravity = [0, 0, 0]\n", 1), "its own weight"));
+    soft.replace(soft.find("1e3"), 3, "2.5e3");
+    EXPECT_FALSE(has_note(run_for(soft, 1), "its own weight"));
+}
+
 TEST(Notes, AToolThatTouchesNothing) {
     const std::string tool = "pin = { below = 0 }\n[[tool]]\nname = \"tip\"\nradius = 0.02\n";
     EXPECT_TRUE(has_note(run_for(weak + tool + "path = [[0, 0, 1, 0], [0.1, 0, 1, 0]]\n", 8),
