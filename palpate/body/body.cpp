@@ -35,18 +35,30 @@ bool is_compact(std::span<const ivec3> places) {
     return true;
 }
 
-// Whether all cells at rest are cubes of the body's spacing, within what rounding makes of them.
+// Whether all cells at rest are cubes of the body's spacing, within what rounding makes of them, and their
+// corners stand in the grid as they do.
 bool has_cubes(const Body& body) {
-    const double hair = 1e-3 * body.spacing;
+    float farthest = 0;
+    for (vec3 p : body.positions)
+        farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    const double hair = 1e-3 * body.spacing + 4.0 * std::numeric_limits<float>::epsilon() * double(farthest);
     return std::ranges::all_of(body.cells, [&](const std::array<int, 8>& nodes) {
         const dmat3 edges = edges_of(nodes, body.positions);
         bool is_cube = glm::determinant(edges) > 0;
+        for (int k = 0; k < 8; ++k)
+            is_cube = is_cube && body.at[std::size_t(nodes[std::size_t(k)])] ==
+                                     body.at[std::size_t(nodes[0])] + ivec3(k & 1, k >> 1 & 1, k >> 2);
         for (int k = 0; k < 3; ++k) {
             is_cube = is_cube && std::abs(glm::length(edges[k]) - body.spacing) <= hair;
             is_cube = is_cube && std::abs(glm::dot(edges[k], edges[(k + 1) % 3])) <= hair * body.spacing;
         }
         return is_cube;
     });
+}
+
+bool are_different(std::vector<int> numbers) {
+    std::ranges::sort(numbers);
+    return std::ranges::adjacent_find(numbers) == numbers.end();
 }
 
 void check_count(const Body& body, std::size_t positions) {
@@ -136,9 +148,18 @@ void check(const Body& body) {
                 "tissue without a Young's modulus above zero", "give it in Pa");
         require(cells->poisson >= 0 && cells->poisson <= 0.499f,
                 "a Poisson's ratio that is not from 0 to 0.499", "organs have 0.45 to 0.49");
-        require(cells->weights.size() == body.cells.size() &&
-                    std::ranges::all_of(cells->weights, [&](float w) { return w > 0 && is_some(w); }),
+        auto is_above_zero = [&](float w) { return w > 0 && is_some(w); };
+        require(cells->filled.size() == body.cells.size() && cells->weights.size() == body.cells.size() &&
+                    std::ranges::all_of(cells->filled, is_above_zero) &&
+                    std::ranges::all_of(cells->weights, is_above_zero),
                 "tissue without a weight above zero for each cell", "1 is a whole cell");
+        std::vector<int> lowest;
+        for (const auto& cell : body.cells) lowest.push_back(cell[0]);
+        require(are_different(std::move(lowest)) &&
+                    std::ranges::count_if(
+                        body.terms,
+                        [](const Term& term) { return std::holds_alternative<TissueCells>(term); }) == 1,
+                "two cells in one place, or tissue twice", "give each cell once");
         require(body.grid() && has_cubes(body), "tissue in cells that are not cubes at rest",
                 "make it of a lattice");
     }

@@ -85,8 +85,8 @@ struct Bending {
 struct TissueCells {
     float youngs_modulus;  // Pa
     float poisson;  // Poisson's ratio, from 0 to below 1/2; tissue that keeps its volume has 0.45 to 0.49
-    /// One a cell: how much of it is filled, times how much stiffer it is than the rest.
-    std::vector<float> weights;
+    std::vector<float> filled;   // one a cell: how much of it the solid fills; mass goes with it
+    std::vector<float> weights;  // the same times how much stiffer the cell is than the rest
 
     /// Lamé's parameters, Pa.
     float shear() const { return youngs_modulus / (2 * (1 + poisson)); }

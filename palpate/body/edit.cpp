@@ -127,11 +127,13 @@ class Cutting {
     std::set<std::pair<int, int>> cut_;  // between which nodes, the lower first
 };
 
-std::vector<int> count_cells(const Body& body) {
-    std::vector<int> count(body.count(), 0);
-    for (const auto& cell : body.cells)
-        for (int node : cell) ++count[std::size_t(node)];
-    return count;
+// How much of the cells around each node is filled.
+std::vector<double> filled_around(const Body& body) {
+    const TissueCells* cells = tissue_of(body);
+    std::vector<double> filled(body.count(), 0);
+    for (std::size_t c = 0; c < body.cells.size(); ++c)
+        for (int node : body.cells[c]) filled[std::size_t(node)] += cells ? double(cells->filled[c]) : 1;
+    return filled;
 }
 
 std::vector<char> held_by_listed_springs(const Body& body) {
@@ -192,7 +194,7 @@ BodyChange apply(Body& body, const Edit& edit) {
     BodyChange change;
     change.nodes_before = body.count();
     std::set<int> touched;
-    const std::vector<int> cells_before = count_cells(body);
+    const std::vector<double> filled_before = filled_around(body);
     {
         Cutting cutting(body);
         for (uvec2 link : edit.links) {
@@ -210,14 +212,17 @@ BodyChange apply(Body& body, const Edit& edit) {
             if (!gone.contains(c)) change.cell_before.push_back(c);
         keep(body.cells, change.cell_before);
         for (Term& term : body.terms)
-            if (auto* tissue = std::get_if<TissueCells>(&term)) keep(tissue->weights, change.cell_before);
+            if (auto* tissue = std::get_if<TissueCells>(&term)) {
+                keep(tissue->filled, change.cell_before);
+                keep(tissue->weights, change.cell_before);
+            }
         touched.merge(cutting.cut_hinges());
     }
-    const std::vector<int> cells_now = count_cells(body);
+    const std::vector<double> filled_now = filled_around(body);
     const std::vector<char> held = held_by_listed_springs(body);
     for (int i = 0; i < int(body.count()); ++i) {
-        const int before = cells_before[std::size_t(i)], now = cells_now[std::size_t(i)];
-        if (now > 0 && now < before) body.inverse_mass[std::size_t(i)] *= float(before) / float(now);
+        const double before = filled_before[std::size_t(i)], now = filled_now[std::size_t(i)];
+        if (now > 0 && now < before) body.inverse_mass[std::size_t(i)] *= float(before / now);
         if (before == 0 || now > 0 || held[std::size_t(i)]) change.node_before.push_back(i);
     }
     if (!change.cells_gone.empty()) {

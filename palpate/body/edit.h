@@ -29,9 +29,10 @@ struct BodyChange {
 };
 
 /// Cuts springs and cells out of a body. A spring of a grid is as strong as the cells that are left around it
-/// say; a hinge goes with any edge of its two triangles along which springs are cut; a node weighs as many
-/// parts of what it did as it has cells left. Nodes that were corners of cells and are no more, and that no
-/// listed spring holds, go. Where cells went the outside is where their neighbours were: its cover is 0
+/// say; a hinge goes with any edge of its two triangles along which springs are cut; a node weighs as much
+/// of what it did as is left of the cells around it. Tissue is held by its cells: there a cut spring of the
+/// grid changes nothing but normals, so cut cells. Nodes that were corners of cells and are no more, and that
+/// no listed spring holds, go. Where cells went the outside is where their neighbours were: its cover is 0
 /// there. Throws Error, and nothing has changed, where the edit names nodes or cells that there are not.
 BodyChange apply(Body& body, const Edit& edit);
 

@@ -106,7 +106,7 @@ void weigh(Body& body, const Material& material, bool equal, double volume) {
     std::vector<double> filled(body.count(), 0);
     const TissueCells* cells = tissue_of(body);
     for (std::size_t c = 0; c < body.cells.size(); ++c)
-        for (int node : body.cells[c]) filled[std::size_t(node)] += cells ? double(cells->weights[c]) : 1;
+        for (int node : body.cells[c]) filled[std::size_t(node)] += cells ? double(cells->filled[c]) : 1;
     std::vector<double> part(body.count(), 1);
     if (!equal)
         for (std::size_t i = 0; i < body.count(); ++i) part[i] = (filled[i] > 0 ? filled[i] : 1) / 8;
@@ -187,7 +187,8 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
         throw Error("tissue without a cell", "the lattice",
                     "use 2 nodes or more along each axis, or springs (poisson 0)");
     if (is_tissue(material))
-        body.terms.push_back(TissueCells{material.youngs_modulus, material.poisson, how_full(cells)});
+        body.terms.push_back(
+            TissueCells{material.youngs_modulus, material.poisson, how_full(cells), how_full(cells)});
     body.inverse_mass.resize(body.count());
     weigh(body, material, equal, volume);
     spread_area(body);
@@ -244,6 +245,27 @@ void mark_inside(const SignedDistance& distance, Sampled& sampled) {
     }
 }
 
+// How much of each cell is inside the solid. What lies in cells that stay empty is added to the filled ones
+// beside them, so that the sum is the solid's volume. Less than an eighth would make nodes of nearly no mass,
+// which no contact can hold.
+void find_parts(Cells& cells, const std::vector<Samples>& samples_of) {
+    for (const Samples& one : samples_of) cells.parts.push_back(float(std::popcount(one.inside)) / 64);
+    const std::vector<float> inside = cells.parts;
+    for_each_place(cells.dims, [&](ivec3 c) {
+        const float part = inside[cells.index(c)];
+        if (cells.at(c) || part == 0) return;
+        std::vector<std::size_t> beside;
+        for (int axis = 0; axis < 3; ++axis)
+            for (int side : {-1, 1}) {
+                ivec3 other = c;
+                other[axis] += side;
+                if (cells.at(other)) beside.push_back(cells.index(other));
+            }
+        for (std::size_t one : beside) cells.parts[one] += part / float(beside.size());
+    });
+    for (float& part : cells.parts) part = std::max(part, 0.125f);
+}
+
 // Marks the points in whose part of their cell the surface lies, by scattering points over each triangle,
 // closer together than the parts are wide: in rows across it, from the corner opposite its shortest side.
 void mark_surface(const Mesh& mesh, Sampled& sampled) {
@@ -292,9 +314,7 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
         mark_inside(distance, sampled);
         mark_surface(mesh, sampled);
         Cells cells = fill(sampled.frame.dims, sampled.cells);
-        // Less than an eighth would make a node of nearly no mass, which no contact can hold.
-        for (const Samples& samples : sampled.cells)
-            cells.parts.push_back(std::max(float(std::popcount(samples.inside)) / 64, 0.125f));
+        find_parts(cells, sampled.cells);
         return std::pair(sampled.frame, std::move(cells));
     };
     auto assemble_at = [&](float h) {

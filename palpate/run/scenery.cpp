@@ -77,9 +77,28 @@ Picture Scenery::picture(double time, const Play& play, const Camera& camera, bo
     return picture;
 }
 
+namespace {
+
+// A body's springs, or where it is tissue the edges of its cells.
+std::vector<uvec2> lines_of(const Body& body) {
+    std::vector<uvec2> lines = spring_ends(body);
+    if (!tissue_of(body)) return lines;
+    for (const std::array<int, 8>& cell : body.cells)
+        for (int bit : {1, 2, 4})
+            for (int k = 0; k < 8; ++k)
+                if ((k & bit) == 0)
+                    lines.push_back({unsigned(cell[std::size_t(k)]), unsigned(cell[std::size_t(k + bit)])});
+    auto in_order = [](uvec2 a, uvec2 b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); };
+    std::ranges::sort(lines, in_order);
+    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    return lines;
+}
+
+}  // namespace
+
 void Scenery::add_bodies(const Play& play, bool springs, Picture& picture) {
     if (springs && springs_.empty())
-        for (const Model& model : made_->models) springs_.push_back(spring_ends(model.body));
+        for (const Model& model : made_->models) springs_.push_back(lines_of(model.body));
     for (std::size_t m = 0; m < made_->models.size(); ++m) {
         Surface& surface = picture.surfaces.emplace_back();
         surface.mesh = meshes_[m];

@@ -79,7 +79,7 @@ void check_tissue(const BodyRecipe& body, const Require& require) {
 // The stiffness of springs: a modulus, one stiffness, or one for each kind.
 void check_springs(const BodyRecipe& body, const Require& require) {
     if (body.springs || body.is_cloth()) {
-        for (const char* key : {"youngs_modulus", "stiffness"})
+        for (const char* key : {"youngs_modulus", "stiffness", "poisson"})
             require(key, !require.has(key), "springs of several kinds beside " + std::string(key),
                     "remove it, and write springs = { structural = 100, shear = 50, flexion = 5 }");
         require("springs", body.is_cloth() || body.dims, "springs are for cloth, sheets and dims",

@@ -431,6 +431,8 @@ void remove_excluded(toml::table& table, const std::string& key) {
         for (const char* other :
              {"youngs_modulus", "poisson", "stiffness", "springs", "links", "density", "mass", "damping"})
             table.erase(other);
+    for (const char* of_springs : {"stiffness", "springs", "links"})
+        if (key == of_springs) table.erase("poisson");
     const std::vector<std::string_view> choices[] = {{"density", "mass"},
                                                      {"youngs_modulus", "stiffness", "springs", "factor"},
                                                      {"nodes", "spacing"},

@@ -56,6 +56,8 @@ Body without_stiff_parts(Body body) {
     if (TissueCells* cells = tissue_in(body)) {
         const float most = float(uneven) * median(cells->weights);
         for (float& weight : cells->weights) weight = std::min(weight, most);
+        for (Term& term : body.terms)
+            if (auto* listed = std::get_if<ListedSprings>(&term)) listed->springs.clear();
         return body;
     }
     body = without_grid(std::move(body));

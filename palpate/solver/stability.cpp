@@ -56,8 +56,12 @@ double highest_frequency(const Body& body) {
 
 double touched_frequency(const Body& body, double frequency, float contact, float pull) {
     double worst = 0;
-    for (std::size_t i = 0; i < body.count(); ++i)
-        worst = std::max(worst, (double(contact) * body.area[i] + pull) * body.inverse_mass[i]);
+    const float inner =
+        tissue_of(body) ? body.spacing * body.spacing : 0;  // at most, m²: tip_force in node.inl
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        const float area = body.area[i] > 0 ? body.area[i] : inner;
+        worst = std::max(worst, (double(contact) * area + pull) * body.inverse_mass[i]);
+    }
     return std::sqrt(frequency * frequency + worst);
 }
 

@@ -1,11 +1,11 @@
 // touch.comp: the impulses that tips and pushes give to the nodes in one pass. Each invocation adds up those that a tip
-// gives to every so manieth node of the outside, which alone it touches; the host adds up the sums. Pushes are gone through
+// gives to every so manieth node of those that it may touch (Placement::rim); the host adds up the sums. Pushes are gone through
 // one by one.
 
 layout(local_size_x = group_size) in;
-layout(binding = rim_unit) uniform isamplerBuffer rim;  // the slots of the nodes of the outside
+layout(binding = rim_unit) uniform isamplerBuffer rim;  // their slots
 layout(std430, binding = impulses_buffer) buffer Impulses { vec4 impulses[]; };  // N s: of each push; then by tips, of each invocation
-uniform int count;         // of the nodes of the outside
+uniform int count;         // of those nodes
 uniform int first_push;    // in `pushes`, of those that were handed in,
 uniform int pushes_given;  // and how many those are
 uniform float seconds;     // over which the forces act

@@ -121,6 +121,10 @@ TEST(Refusal, OfBodiesThatDoNotHold) {
     refused("a Poisson's ratio", organ, [&](Body& b) { cells(b).poisson = none; });
     refused("a weight above zero for each cell", organ, [&](Body& b) { cells(b).weights.pop_back(); });
     refused("a weight above zero for each cell", organ, [&](Body& b) { cells(b).weights[2] = 0; });
+    refused("a weight above zero for each cell", organ, [&](Body& b) { cells(b).filled.pop_back(); });
+    refused("two cells in one place", organ, [&](Body& b) { b.cells[1] = b.cells[0]; });
+    refused("tissue twice", organ, [&](Body& b) { b.terms.push_back(b.terms[1]); });
+    refused("not cubes at rest", organ, [&](Body& b) { std::swap(b.at[0], b.at[1]); });
     refused("not cubes at rest", organ, [&](Body& b) { b.positions[7].x += 0.004f; });
     refused("not cubes at rest", organ, [&](Body& b) {
         for (vec3& p : b.positions) p.z = -p.z;

@@ -265,6 +265,43 @@ TEST(Tissue, TheStepBoundIsBelowTheClosedFormForAnyFilling) {
     }
 }
 
+TEST(Tissue, FillsTheVolumeOfItsMesh) {
+    for (int nodes : {100, 1000, 5000}) {
+        const Mesh mesh = ellipsoid({0.05f, 0.03f, 0.04f}, 24);
+        const Body body = lattice(mesh, {.nodes = nodes, .material = solid});
+        double filled = 0;
+        for (float part : tissue_of(body)->filled) filled += double(part);
+        EXPECT_LE(std::abs(filled * std::pow(double(body.spacing), 3) / double(volume(mesh)) - 1), 0.02)
+            << nodes;
+    }
+}
+
+TEST(Tissue, WeighsWhatIsLeftWhereCellsAreCut) {
+    Body body = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 300, .material = solid});
+    auto mass_of_filling = [](const Body& of) {
+        double sum = 0;
+        for (float part : tissue_of(of)->filled) sum += double(part);
+        return sum / mass(of);
+    };
+    const double before = mass_of_filling(body);
+    Edit edit;
+    for (int c = 0; c < int(body.cells.size()); c += 3) edit.cells.push_back(c);
+    apply(body, edit);
+    EXPECT_LE(std::abs(mass_of_filling(body) / before - 1), 1e-4);
+    EXPECT_EQ(tissue_of(body)->weights.size(), body.cells.size());
+}
+
+TEST(Tissue, MayBeFarOut) {
+    Body body = lattice({4, 4, 4}, 0.005f, solid);
+    for (vec3& p : body.positions) p += vec3(300, -100, 50);
+    EXPECT_NO_THROW(check(body));
+    auto solver = make_solver(body, {.gravity = vec3(0)});
+    ASSERT_FALSE(solver->step(0.1).diverged);
+    const State end = solver->state();
+    for (std::size_t i = 0; i < body.count(); ++i)
+        EXPECT_LE(glm::length(end.positions[i] - dvec3(body.positions[i])), 1e-4);
+}
+
 std::size_t inside_out(const Solver& solver) {
     return inverted_cells(solver.body(), solver.nodes().positions);
 }

@@ -68,8 +68,8 @@ struct Cells {
 };
 
 /// What cells do to their corners, N: x, y, z of each corner in turn, 24 arrays of `size` and one register
-/// more. The cell of a slot stands at the slot modulo `size`, which is as much as the next nodes need, so
-/// that it stays in the cache.
+/// more. The cell of a slot stands at the slot modulo `size`, which is as much as the next nodes need: a
+/// layer of the grid or so, which stays in the cache unless the grid is very wide.
 struct CellRing {
     float* numbers;
     int size;
