@@ -8,7 +8,8 @@ namespace palpate {
 
 /// The forces of a body's terms by themselves, in double, of any shape: what the stability bound, reports and
 /// other people's solvers ask. They come from the same text as every step (solver/terms/). Lists are one
-/// entry a node. All throw Error where a list is of another length.
+/// entry a node. at() and stiffness_times() work on all processors. All throw Error where a list is of
+/// another length.
 class Forces {
  public:
     /// Throws Error if the body does not hold (check(body)). Keeps what it needs of the body.

@@ -302,6 +302,16 @@ TEST(Tissue, MayBeFarOut) {
         EXPECT_LE(glm::length(end.positions[i] - dvec3(body.positions[i])), 1e-4);
 }
 
+// A block that is held at its lowest layer.
+Body held_block(ivec3 dims, float spacing, float poisson) {
+    Material material = solid;
+    material.poisson = poisson;
+    Body body = lattice(dims, spacing, material);
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+    return body;
+}
+
 std::size_t inside_out(const Solver& solver) {
     return inverted_cells(solver.body(), solver.nodes().positions);
 }
@@ -309,11 +319,7 @@ std::size_t inside_out(const Solver& solver) {
 // Held at its lowest layer, at the automatic step.
 TEST(Tissue, ComesBackFromAnyStart) {
     for (const float poisson : {0.45f, 0.49f}) {
-        Material material = solid;
-        material.poisson = poisson;
-        Body body = lattice({7, 7, 7}, 0.01f, material);
-        for (std::size_t i = 0; i < body.count(); ++i)
-            if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+        const Body body = held_block({7, 7, 7}, 0.01f, poisson);
         const Places rest = places(body);
         const Places starts[] = {scattered(rest, 0.02, 1),
                                  [&] {
@@ -336,11 +342,7 @@ TEST(Tissue, ComesBackFromAnyStart) {
             for (int call = 0; call < 40; ++call)
                 ASSERT_FALSE(solver->step(0.1).diverged) << poisson << " " << s;
             EXPECT_EQ(inside_out(*solver), 0u) << poisson << ", start " << s;
-            const State end = solver->state();
-            double apart = 0;
-            for (std::size_t i = 0; i < rest.size(); ++i)
-                apart = std::max(apart, glm::length(end.positions[i] - rest[i]));
-            EXPECT_LE(apart, 1e-4) << poisson << ", start " << s;
+            EXPECT_LE(furthest_apart(solver->state().positions, rest), 1e-4) << poisson << ", start " << s;
         }
     }
 }
@@ -348,11 +350,7 @@ TEST(Tissue, ComesBackFromAnyStart) {
 // 100 presses of a ball that nobody chose: down, along and up again, at places, depths and speeds by chance.
 TEST(Tissue, ComesBackFromRandomPresses) {
     for (const float poisson : {0.45f, 0.49f}) {
-        Material material = solid;
-        material.poisson = poisson;
-        Body body = lattice({10, 6, 9}, 0.01f, material);
-        for (std::size_t i = 0; i < body.count(); ++i)
-            if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+        const Body body = held_block({10, 6, 9}, 0.01f, poisson);
         const Places rest = places(body);
         const auto solver = make_solver(body, {.gravity = vec3(0)});
         std::mt19937 random(7);
@@ -373,21 +371,13 @@ TEST(Tissue, ComesBackFromRandomPresses) {
         }
         for (int call = 0; call < 30; ++call) ASSERT_FALSE(solver->step(0.1).diverged);
         EXPECT_EQ(inside_out(*solver), 0u) << poisson;
-        const State end = solver->state();
-        double apart = 0;
-        for (std::size_t i = 0; i < rest.size(); ++i)
-            apart = std::max(apart, glm::length(end.positions[i] - rest[i]));
-        EXPECT_LE(apart, 1e-4) << poisson;
+        EXPECT_LE(furthest_apart(solver->state().positions, rest), 1e-4) << poisson;
     }
 }
 
 // A ball presses away a third of a block's height.
 TEST(Tissue, KeepsItsVolumeUnderAPress) {
-    Material material = solid;
-    material.poisson = 0.49f;
-    Body body = lattice({19, 13, 19}, 0.005f, material);
-    for (std::size_t i = 0; i < body.count(); ++i)
-        if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+    const Body body = held_block({19, 13, 19}, 0.005f, 0.49f);
     const auto solver = make_solver(body, {.gravity = vec3(0)});
     const float radius = 0.03f, way = 0.022f, seconds = 1;
     Press tip{{0.045f, 0.06f + radius, 0.045f}, {0, -way / seconds, 0}, radius, 30000};
@@ -415,9 +405,7 @@ TEST(Tissue, KeepsItsVolumeUnderAPress) {
 TEST(Tissue, HoldsATipThatIsDeep) {
     std::vector<double> forces;
     for (int fine : {1, 2}) {
-        Body body = lattice(ivec3(10 * fine + 1), 0.01f / float(fine), solid);
-        for (std::size_t i = 0; i < body.count(); ++i)
-            if (body.at[i].y == 0) body.inverse_mass[i] = 0;
+        const Body body = held_block(ivec3(10 * fine + 1), 0.01f / float(fine), solid.poisson);
         const auto solver = make_solver(body, {.gravity = vec3(0)});
         Press tip{{0.05f, 0.13f, 0.05f}, {0, -0.08f, 0}, 0.03f, 3000};
         Stats stats;
