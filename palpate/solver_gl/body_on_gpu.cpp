@@ -129,12 +129,6 @@ gl::Field ties_of(const Body& body, const Placement& placement) {
     return field(GL_RGBA32F, ties);
 }
 
-std::vector<vec4> with_room(const std::vector<vec3>& vectors) {
-    std::vector<vec4> list;
-    for (vec3 v : vectors) list.emplace_back(v, 0);
-    return list;
-}
-
 std::vector<float> all_distances(const Simulation& simulation) {
     std::vector<float> all;
     for (const DistanceField* one : distance_fields(simulation))
@@ -142,15 +136,17 @@ std::vector<float> all_distances(const Simulation& simulation) {
     return all;
 }
 
-std::vector<vec4> grids_of(const Simulation& simulation) {
-    std::vector<vec4> grids;
+// The grids of fields, and behind them the corners of polygons.
+std::vector<vec4> obstacles_of(const Simulation& simulation) {
+    std::vector<vec4> all;
     int first = 0;
     for (const DistanceField* one : distance_fields(simulation)) {
-        grids.emplace_back(one->origin, one->spacing);
-        grids.push_back(std::bit_cast<vec4>(ivec4(one->dims, first)));
+        all.emplace_back(one->origin, one->spacing);
+        all.push_back(std::bit_cast<vec4>(ivec4(one->dims, first)));
         first += int(one->distance.size());
     }
-    return grids;
+    for (vec3 corner : polygon_corners(simulation)) all.emplace_back(corner, 0);
+    return all;
 }
 
 std::vector<int> number_guides(const Body& body) {
@@ -196,6 +192,7 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     define(true, fmt::format("LINKS {}", stencil ? pass.links : table(body).width));
     define(true, fmt::format("HINGES {}", stencil ? 0 : most_hinges(own_hinges(body))));
     define(true, fmt::format("CELLS {}", tissue_of(body) ? 8 : 0));
+    define(true, fmt::format("FIELDS {}", distance_fields(simulation).size()));
     define(tissue_of(body) && spring_ends(body).empty(), "SPRINGS 0");
     define(!stencil, "TABLE");
     define(stencil && stencil->in_quarters(), "QUARTERS");
@@ -231,9 +228,8 @@ BodyOnGpu::BodyOnGpu(const Body& body, const Simulation& simulation, const Place
       ties_(ties_of(body, placement)),
       slots_(field(GL_R32I, placement.slot)),
       rim_(field(GL_R32I, placement.rim)),
-      corners_(field(GL_RGBA32F, with_room(polygon_corners(simulation)))),
+      obstacles_(field(GL_RGBA32F, obstacles_of(simulation))),
       distances_(field(GL_R32F, all_distances(simulation))),
-      grids_(field(GL_RGBA32F, grids_of(simulation))),
       guide_(number_guides(body)),
       guides_(GL_RGBA32F, sizeof(vec4), 2 * count_guides(body), 0),
       uniforms_(gl::Buffer::room(sizeof(Pass))),
@@ -257,9 +253,8 @@ void BodyOnGpu::bind() const {
     traits_.bind(traits_unit);
     ties_.bind(ties_unit);
     guides_.bind(guides_unit);
-    corners_.bind(corners_unit);
+    obstacles_.bind(obstacles_unit);
     distances_.bind(distances_unit);
-    grids_.bind(grids_unit);
     slots_.bind(slots_unit);
     push_of_slots_.bind(push_of_unit);
     for (GLuint unit = 0; unit < units; ++unit) glBindSampler(unit, 0);

@@ -53,7 +53,7 @@ class BodyOnGpu {
  private:
     std::vector<uvec4> traits_of_;  // of slots, as in
     gl::Field traits_, ties_, slots_, rim_;
-    gl::Field corners_, distances_, grids_;
+    gl::Field obstacles_, distances_;
     std::vector<int> guide_;  // of each node
     gl::Field guides_;
     gl::Buffer uniforms_;

@@ -15,6 +15,9 @@ namespace {
 
 using namespace gpu;
 
+const char* cells_comp =
+#include "embedded/cells.comp.h"
+    ;
 const char* closing_comp =
 #include "embedded/closing.comp.h"
     ;
@@ -73,6 +76,9 @@ class Gpu final : public Machine {
                 states_[where].emplace(make_state());
         if (adds_up()) next_sum_.emplace(make_state());
         before_.emplace(make_state());
+        if (tissue_of(body_))
+            cells_.emplace(Cells{compute_program(text(false, false), "cells.comp", cells_comp),
+                                 gl::Field(GL_RGBA32F, sizeof(vec4), 8 * body_.cells.size(), 0)});
     }
 
     ~Gpu() override { context_.make_current_or_not(); }
@@ -99,6 +105,7 @@ class Gpu final : public Machine {
             if (tools) on_gpu_.place(plan.tips);
             look_at(*states_[plan.at]);
             if (tools && plan.impulse > 0) add_impulses(*tools, call, plan.impulse);
+            if (pass.kick > 0) work_out_cells();
             run(pipeline, plan);
         });
         return close(influences, call.origin.after(call.steps * call.step), call.step);
@@ -191,10 +198,26 @@ class Gpu final : public Machine {
         for (const auto& state : states_)
             if (state) add(*state);
         if (next_sum_) add(*next_sum_);
+        if (cells_) bytes += cells_->forces.bytes();
         return bytes;
     }
 
  private:
+    // What is needed of tissue.
+    struct Cells {
+        gl::Program program;
+        gl::Field forces;  // of each cell on its corners, N
+    };
+    // In the state that is looked at.
+    void work_out_cells() const {
+        if (!cells_) return;
+        cells_->program.use();
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, cell_forces_buffer, cells_->forces.buffer());
+        glDispatchCompute(GLuint(groups(placement_.slots)), 1, 1);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+        cells_->forces.bind(cell_forces_unit);
+    }
+
     // What is needed where tools act.
     struct Touched {
         std::unique_ptr<Pipeline> pipeline;
@@ -245,6 +268,7 @@ class Gpu final : public Machine {
         on_gpu_.upload(pass);
         Moving &at = *states_[current], &free = *states_[scheme_.stages.size() == 1 ? between : further];
         look_at(at);
+        work_out_cells();
         alone_->pass({at, at, at.positions, at, free, adds_up() ? *next_sum_ : free});
         return free;
     }
@@ -309,6 +333,7 @@ class Gpu final : public Machine {
     const bool tiled_;
     std::unique_ptr<Pipeline> alone_;  // with no tools
     gl::Program closing_;
+    std::optional<Cells> cells_;
     std::optional<Touched> touched_;
     const Pass quiet_;                         // nothing touches or moves it
     mutable std::optional<Moving> states_[4];  // StateBuffer

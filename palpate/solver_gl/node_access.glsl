@@ -7,12 +7,11 @@ layout(binding = velocities_unit) uniform Floats velocities;  // m/s; w: number 
 layout(binding = traits_unit) uniform usamplerBuffer traits;   // of a slot: two words of shares; area and cover, as floats' bits
 layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; behind them hinges and cells; or strengths
 layout(binding = guides_unit) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
-layout(binding = corners_unit) uniform samplerBuffer corners;   // of polygons
 layout(binding = distances_unit) uniform samplerBuffer distances; // of fields, one after the other
 layout(binding = tips_unit) uniform samplerBuffer tips;        // in pairs: as a RoundTip
 layout(binding = push_of_unit) uniform isamplerBuffer push_of; // of a slot: the number of its push, from 1 on; 0: none
 layout(binding = pushes_unit) uniform samplerBuffer pushes;    // in threes: where to, N/m; velocity, and a slot; force
-layout(binding = grids_unit) uniform samplerBuffer grids;     // of fields, in pairs: origin and spacing; dims and first distance
+layout(binding = obstacles_unit) uniform samplerBuffer obstacles; // of fields, in pairs: origin and spacing; dims and first distance; then of polygons: corners
 
 int id;       // this node's slot
 uvec4 trait;  // its own
@@ -86,6 +85,17 @@ float cell_weight(int k) { return cell(k) < 0 ? 0 : cell_part(k, 2).x; }
 vec3 cell_corner(vec3 p, int k, int c) { return cell(k) < 0 ? vec3(0) : at(positions, cell_slot(k, c)).xyz - p; }
 vec3 cell_corner_passing(vec3 v, int k, int c) { return cell(k) < 0 ? vec3(0) : velocity_of(at(velocities, cell_slot(k, c))) - v; }
 
+// Cells are worked out before a pass, each once (cells.comp), and what they do to their corners lies one cell after the other.
+#define OWN_CELLS
+layout(binding = cell_forces_unit) uniform samplerBuffer forces_on_corners;
+vec3 forces_of_cells() {
+    vec3 sum = vec3(0);
+    for (int k = 0; k < CELLS; ++k)
+        if (cell(k) >= 0) sum += texelFetch(forces_on_corners, 8 * cell(k) + k).xyz;
+    return sum;
+}
+#define cells_force(node) forces_of_cells()
+
 vec3 origin() { return vec3(0); }
 float area() { return uintBitsToFloat(trait.z); }
 float cover() { return uintBitsToFloat(trait.w); }
@@ -97,12 +107,12 @@ vec4 push_part(int part) {
 vec3 push() { return push_part(2).xyz; }
 vec3 push_target() { return push_part(0).xyz + pass.time * push_part(1).xyz; }
 float push_stiffness() { return push_part(0).w; }
-vec3 corner(int i) { return texelFetch(corners, i).xyz; }
+vec3 corner(int i) { return texelFetch(obstacles, 2 * FIELDS + i).xyz; }
 
 // As DistanceField::at and gradient.
 float distance_at(int i, vec3 p) {
-    vec4 grid = texelFetch(grids, 2 * i);
-    ivec4 dims = floatBitsToInt(texelFetch(grids, 2 * i + 1));
+    vec4 grid = texelFetch(obstacles, 2 * i);
+    ivec4 dims = floatBitsToInt(texelFetch(obstacles, 2 * i + 1));
     vec3 way = (p - grid.xyz) / grid.w, most = vec3(dims.xyz - 1);
     vec3 place = vec3(way.x > 0 ? min(way.x, most.x) : 0, way.y > 0 ? min(way.y, most.y) : 0, way.z > 0 ? min(way.z, most.z) : 0);
     ivec3 cell = min(ivec3(place), dims.xyz - 2);
@@ -117,7 +127,7 @@ float distance_at(int i, vec3 p) {
     return sum;
 }
 vec3 uphill_at(int i, vec3 p) {
-    vec2 h = vec2(0.5 * texelFetch(grids, 2 * i).w, 0);
+    vec2 h = vec2(0.5 * texelFetch(obstacles, 2 * i).w, 0);
     return vec3(distance_at(i, p + h.xyy) - distance_at(i, p - h.xyy), distance_at(i, p + h.yxy) - distance_at(i, p - h.yxy),
                 distance_at(i, p + h.yyx) - distance_at(i, p - h.yyx));
 }

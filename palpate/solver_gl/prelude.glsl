@@ -2,6 +2,8 @@
 // holds for the body:
 //   LINKS n       how many links a node has
 //   HINGES n      and how many hinges; only where springs are written out
+//   CELLS n       8 in tissue, else 0
+//   FIELDS n      how many obstacles are distance fields
 //   TABLE         springs are written out; else a grid implies them:
 //   QUARTERS      with shares of three bits, ten in a word; else one bit each
 //   STRENGTH      with a factor on stiffness for each node

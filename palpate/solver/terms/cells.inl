@@ -19,24 +19,24 @@ struct Eight {
 
 // Sums and differences along the three axes. 1, 2 and 4 are four times the mean edges; 3, 5, 6 and 7 the hourglasses.
 FN Eight modes(Eight e) {
-    UNROLL for (int bit = 1; bit < 8; bit *= 2)
+    UNROLL for (int axis = 0; axis < 3; ++axis)
         UNROLL for (int k = 0; k < 8; ++k)
-            if ((k & bit) == 0) {
-                Real3 a = e.c[k], b = e.c[k + bit];
+            if ((k >> axis & 1) == 0) {
+                Real3 a = e.c[k], b = e.c[k + (1 << axis)];
                 e.c[k] = a + b;
-                e.c[k + bit] = b - a;
+                e.c[k + (1 << axis)] = b - a;
             }
     return e;
 }
 
 // The transpose: what is given by modes, of which the first is 0, on all corners; or on one.
 FN Eight on_corners(Eight e) {
-    UNROLL for (int bit = 1; bit < 8; bit *= 2)
+    UNROLL for (int axis = 0; axis < 3; ++axis)
         UNROLL for (int k = 0; k < 8; ++k)
-            if ((k & bit) == 0) {
-                Real3 a = e.c[k], b = e.c[k + bit];
+            if ((k >> axis & 1) == 0) {
+                Real3 a = e.c[k], b = e.c[k + (1 << axis)];
                 e.c[k] = a - b;
-                e.c[k + bit] = a + b;
+                e.c[k + (1 << axis)] = a + b;
             }
     return e;
 }
