@@ -52,6 +52,14 @@ void set_rest(const std::string& rule, RunSettings& settings) {
     settings.until_rest = *known;
 }
 
+// Of tissue, its cells are what resists.
+std::pair<std::string, std::string> nodes_and_links(const Report::Body& body) {
+    const bool of_cells = body.springs == 0 && body.cells > 0;
+    return {of_cells ? "nodes, cells" : "nodes, springs",
+            fmt::format("{}, {}", grouped((long long)body.nodes),
+                        grouped((long long)(of_cells ? body.cells : body.springs)))};
+}
+
 void print_summary(const Report& report) {
     const double frames = std::max(report.frames, 1);
     auto each = [&](double seconds) {
@@ -65,8 +73,7 @@ void print_summary(const Report& report) {
                                                          grouped((long long)body.faces))}});
         else
             print_table({{"body", body.name},
-                         {"nodes, springs", fmt::format("{}, {}", grouped((long long)body.nodes),
-                                                        grouped((long long)body.springs))},
+                         nodes_and_links(body),
                          {"vertices, faces", fmt::format("{}, {}", grouped((long long)body.vertices),
                                                          grouped((long long)body.faces))},
                          {"spacing", fmt::format("{:.2f} mm", 1000 * body.spacing)},

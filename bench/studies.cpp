@@ -49,7 +49,8 @@ double distance(const State& a, const State& b) {
 }
 
 Body small_lattice(const Damping& damping) {
-    Body body = lattice({4, 3, 5}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
+    Body body =
+        lattice({4, 3, 5}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs});
     body.damping = damping.of_nodes * 20;
     body.link_damping = damping.of_links;
     pin(body, nodes_in(body, {vec3(-1), vec3(0.001f, 1, 1)}));  // otherwise it would rotate for ever
@@ -140,7 +141,9 @@ double pulse_speed(bool shear) {
     const ivec3 dims = shear ? ivec3(64, 65, 3) : ivec3(64, 25, 25);
     const int middle = dims.x / 2;
     const double modulus = 5000, density = 1000;
-    Body body = lattice(dims, h, {.youngs_modulus = float(modulus), .density = float(density)});
+    Body body = lattice(
+        dims, h,
+        {.youngs_modulus = float(modulus), .density = float(density), .model = MaterialModel::springs});
     const double k = 0.4 * modulus * h;
     const double speed = std::sqrt((shear ? 1 : 3) * k / (h * density));
     for (vec3& p : body.positions) {
@@ -180,7 +183,10 @@ double cantilever_sag(int cells) {
     // Its lowest mode is damped critically.
     const double slowest = 3.516 / (far * far) * std::sqrt(modulus * inertia / (density * thick * thick));
     Body body = lattice({length + 1, cells + 1, cells + 1}, h,
-                        {.youngs_modulus = modulus, .density = density, .damping = float(2 * slowest)});
+                        {.youngs_modulus = modulus,
+                         .density = density,
+                         .damping = float(2 * slowest),
+                         .model = MaterialModel::springs});
     pin(body, nodes_in(body, {vec3(-1), vec3(0.1f * h, 1, 1)}));
     Simulation simulation{.gravity = vec3(0, -gravity, 0)};
     auto solver = make_exact_solver(body, simulation, highest_frequency(body));
@@ -197,7 +203,8 @@ double cantilever_sag(int cells) {
 }
 
 Swing energy_swing(Integrator integrator, int steps) {
-    Body body = lattice({3, 2, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
+    Body body =
+        lattice({3, 2, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs});
     const double frequency = highest_frequency(body);
     for (vec3& p : body.positions) p *= vec3(1.02f, 0.99f, 1.01f);
     auto solver = make_exact_solver(body, {.integrator = integrator, .gravity = vec3(0)}, frequency);

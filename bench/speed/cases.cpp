@@ -18,8 +18,9 @@
 namespace palpate::speed {
 namespace {
 
-const Material tissue{.youngs_modulus = 10'000, .density = 1040, .damping = 5};
-const Material solid{.youngs_modulus = 10'000, .poisson = 0.45f, .density = 1040, .damping = 5};
+const Material of_springs{
+    .youngs_modulus = 10'000, .density = 1040, .damping = 5, .model = MaterialModel::springs};
+const Material of_tissue{.youngs_modulus = 10'000, .density = 1040, .damping = 5};
 
 Simulation with(Backend backend, int threads = 1, Integrator integrator = Integrator::verlet) {
     return {.backend = backend, .threads = threads, .integrator = integrator};
@@ -39,7 +40,7 @@ Mesh shuffled(const Mesh& mesh) {
 
 // Every link at its full share, as in 2005; one edge pinned.
 Body whole_box(int nodes) {
-    Body box = lattice(ivec3(nodes), 0.01f, tissue);
+    Body box = lattice(ivec3(nodes), 0.01f, of_springs);
     GridSprings& stencil = *box.grid();
     for (std::size_t i = 0; i < box.count(); ++i)
         for (std::size_t l = 0; l < stencil.links.size(); ++l)
@@ -86,26 +87,26 @@ Case mapping_of(std::string name, const Mesh& surface, const Body& body, Mapping
 }  // namespace
 
 std::vector<Case> lattice_cases() {
-    const Body box = lattice(ivec3(27), 0.01f, tissue), large = lattice(ivec3(64), 0.01f, tissue);
+    const Body box = lattice(ivec3(27), 0.01f, of_springs), large = lattice(ivec3(64), 0.01f, of_springs);
     std::vector<Case> cases;
     auto add = [&](const std::string& name, const Body& body, const Simulation& how) {
         cases.push_back(stepping(name, body, how));
     };
     add("27³, whole links", whole_box(27), with(Backend::cpu));
-    const Body small = lattice(ivec3(10), 0.01f, tissue);
+    const Body small = lattice(ivec3(10), 0.01f, of_springs);
     add("10³", small, with(Backend::cpu));
     cases.push_back(stepping("10³, a call for each step", small, with(Backend::cpu), nullptr, 1));
     add("27³, shares", box, with(Backend::cpu));
     add("27³, shares, 2 threads", box, with(Backend::cpu, 2));
     add("64³, shares", large, with(Backend::cpu));
     add("64³, shares, 2 threads", large, with(Backend::cpu, 2));
-    add("ball of 20,000 nodes", lattice(ellipsoid(vec3(0.1f), 60), {.nodes = 20'000, .material = tissue}),
+    add("ball of 20,000 nodes", lattice(ellipsoid(vec3(0.1f), 60), {.nodes = 20'000, .material = of_springs}),
         with(Backend::cpu));
-    add("27³, cells of tissue", lattice(ivec3(27), 0.01f, solid), with(Backend::cpu));
-    add("27³, cells of tissue, 2 threads", lattice(ivec3(27), 0.01f, solid), with(Backend::cpu, 2));
-    add("64³, cells of tissue", lattice(ivec3(64), 0.01f, solid), with(Backend::cpu));
+    add("27³, cells of tissue", lattice(ivec3(27), 0.01f, of_tissue), with(Backend::cpu));
+    add("27³, cells of tissue, 2 threads", lattice(ivec3(27), 0.01f, of_tissue), with(Backend::cpu, 2));
+    add("64³, cells of tissue", lattice(ivec3(64), 0.01f, of_tissue), with(Backend::cpu));
     add("ball of 20,000 nodes, cells of tissue",
-        lattice(ellipsoid(vec3(0.1f), 60), {.nodes = 20'000, .material = solid}), with(Backend::cpu));
+        lattice(ellipsoid(vec3(0.1f), 60), {.nodes = 20'000, .material = of_tissue}), with(Backend::cpu));
     try {
         const Scene scene = read_scene("brain");
         add("brain of 20,000 nodes", build(scene).models.front().body, with(Backend::cpu));
@@ -123,7 +124,7 @@ std::vector<Case> lattice_cases() {
         if (integrator != Integrator::verlet)
             add(fmt::format("27³, {}", name), box, with(Backend::cpu, 1, integrator));
     add("27³, the scalar reference", box, with(Backend::reference));
-    add("27³, cells of tissue, the scalar reference", lattice(ivec3(27), 0.01f, solid),
+    add("27³, cells of tissue, the scalar reference", lattice(ivec3(27), 0.01f, of_tissue),
         with(Backend::reference));
     for (Case& of : bullet(box)) cases.push_back(std::move(of));
     return cases;
@@ -155,7 +156,7 @@ std::vector<Case> cloth_cases() {
 
 std::vector<Case> embed_cases() {
     const Mesh surface = ellipsoid(vec3(0.1f), 283);  // 159,614 vertices
-    const Body body = lattice(surface, {.nodes = 20'000, .material = tissue});
+    const Body body = lattice(surface, {.nodes = 20'000, .material = of_springs});
     constexpr double written = 2 * sizeof(vec3);
     std::vector<Case> cases;
     for (int threads : {1, 2}) {

@@ -27,7 +27,8 @@ constexpr double one_step = 1e-5;  // s
 constexpr Mapping mappings[] = {Mapping::constant, Mapping::interpolated, Mapping::trilinear, Mapping::frames,
                                 Mapping::one_to_one};
 
-const Material flesh{.youngs_modulus = 40'000, .density = 1060, .damping = 20};
+const Material flesh{
+    .youngs_modulus = 40'000, .density = 1060, .damping = 20, .model = MaterialModel::springs};
 
 // A body and the surfaces embedded in it.
 struct Subject {

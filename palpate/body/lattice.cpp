@@ -23,8 +23,6 @@ Link link_to(ivec3 offset, float stiffness, float spacing) {
     return {offset, stiffness, spacing * glm::length(vec3(offset))};
 }
 
-bool is_tissue(const Material& material) { return material.poisson != 0; }
-
 std::vector<Link> isotropic_links(const Material& material, float spacing) {
     const float stiffness = is_tissue(material)      ? 0
                             : material.stiffness > 0 ? material.stiffness
@@ -133,10 +131,13 @@ void check_stiffness(const Material& material) {
     if (!is_one(material.youngs_modulus, material.stiffness))
         throw Error("both a Young's modulus and a stiffness above zero, or none", "the material of a lattice",
                     "give it one of them");
-    if (!(material.poisson >= 0 && material.poisson <= 0.499f) ||
-        (is_tissue(material) && !(material.youngs_modulus > 0)))
-        throw Error("a Poisson's ratio that is not from 0 to 0.499, or without a Young's modulus",
-                    "the material of a lattice", "tissue has 0.45 to 0.49; 0 makes it of springs");
+    if (!is_tissue(material)) return;
+    if (!(material.youngs_modulus > 0))
+        throw Error("tissue without a Young's modulus", "the material of a lattice",
+                    "give it one, or make it of springs");
+    if (!(material.poisson >= 0 && material.poisson <= 0.499f))
+        throw Error(fmt::format("a Poisson's ratio of {}", material.poisson), "the material of a lattice",
+                    "use one from 0 to 0.499; most organs have 0.45 to 0.49");
 }
 void check_mass(const Material& material) {
     if (!is_one(material.density, material.mass))
@@ -185,7 +186,7 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
     });
     if (is_tissue(material) && body.cells.empty())
         throw Error("tissue without a cell", "the lattice",
-                    "use 2 nodes or more along each axis, or springs (poisson 0)");
+                    "use 2 nodes or more along each axis, or make it of springs");
     if (is_tissue(material))
         body.terms.push_back(
             TissueCells{material.youngs_modulus, material.poisson, how_full(cells), how_full(cells)});
@@ -349,10 +350,13 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
 bool restuff(Body& body, const Material& from, const Material& to, double volume) {
     check_stiffness(to);
     check_mass(to);
-    if (equal_links(from) != equal_links(to) || is_tissue(from) || is_tissue(to)) return false;
+    if (equal_links(from) != equal_links(to) || is_tissue(from) != is_tissue(to)) return false;
     GridSprings& springs = *body.grid();
     springs.links = isotropic_links(to, body.spacing);
     springs.strength.clear();
+    for (Term& term : body.terms)
+        if (auto* cells = std::get_if<TissueCells>(&term))
+            *cells = {to.youngs_modulus, to.poisson, cells->filled, cells->filled};
     body.damping = to.damping;
     body.link_damping = to.link_damping;
     weigh(body, to, equal_links(to), std::abs(volume));
@@ -382,12 +386,17 @@ Body lattice(ivec3 dims, float spacing, const Material& material) {
         check_stiffness(material);
         check_mass(material);
     }
-    return plain_box(dims, spacing, isotropic_links(material, spacing), material, equal_links(material));
+    Material of_what = material;
+    if (std::min({dims.x, dims.y, dims.z}) < 2 && material.model == MaterialModel::automatic)
+        of_what.model = MaterialModel::springs;
+    return plain_box(dims, spacing, isotropic_links(of_what, spacing), of_what, equal_links(of_what));
 }
 
 Body lattice(ivec3 dims, float spacing, const SpringKinds& stiffness, const Material& material) {
     check_mass(material);
-    return plain_box(dims, spacing, links_of_kinds(stiffness, spacing), material, true);
+    Material of_springs = material;
+    of_springs.model = MaterialModel::springs;
+    return plain_box(dims, spacing, links_of_kinds(stiffness, spacing), of_springs, true);
 }
 
 }  // namespace palpate

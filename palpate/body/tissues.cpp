@@ -86,7 +86,11 @@ constexpr Tissue all_tissues[] = {
 }  // namespace
 
 Material Tissue::material() const {
-    return {.youngs_modulus = youngs_modulus, .poisson = poisson, .density = density, .damping = damping};
+    return {.youngs_modulus = youngs_modulus,
+            .poisson = poisson,
+            .density = density,
+            .damping = damping,
+            .model = MaterialModel::tissue};
 }
 
 std::span<const Tissue> tissues() { return all_tissues; }

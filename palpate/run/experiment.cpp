@@ -29,8 +29,8 @@ bool leaves_shapes(const Change& change) {
         return last == "friction" || last == "margin" || key.find(".plane.") != std::string::npos ||
                key.find(".sphere.") != std::string::npos;
     for (const char* one :
-         {"youngs_modulus", "poisson", "stiffness", "springs", "structural", "shear", "flexion", "bending",
-          "density", "mass", "damping", "link_damping", "pin", "tissue"})
+         {"youngs_modulus", "poisson", "model", "stiffness", "springs", "structural", "shear", "flexion",
+          "bending", "density", "mass", "damping", "link_damping", "pin", "tissue"})
         if (last == one) return key.starts_with("body.");
     return false;
 }

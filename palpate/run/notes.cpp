@@ -186,9 +186,10 @@ std::string how_to_ask_less(const Scene& scene, const Report& report) {
     if (!less.empty()) return less;
     if (!scene.wind.empty()) return "use a stiffer material, or less wind";
     constexpr float strong = 50;  // m/s²
-    if (glm::length(scene.simulation.gravity) > strong)
-        return fmt::format("use less gravity: it is {:.3g} times the Earth's",
-                           glm::length(scene.simulation.gravity) / 9.81f);
+    const float gravity = glm::length(scene.simulation.gravity);
+    if (gravity == 0) return "press or pull it less hard";
+    if (gravity > strong)
+        return fmt::format("use less gravity: it is {:.3g} times the Earth's", gravity / 9.81f);
     return "use a stiffer material: its own weight is too much for it";
 }
 
@@ -254,9 +255,9 @@ std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
 namespace {
 
 // Whether it is a solid of springs that could be tissue.
-bool is_of_springs(const Scene& scene, const std::string& body) {
+bool could_be_tissue(const Scene& scene, const std::string& body) {
     return std::ranges::any_of(scene.bodies, [&](const BodyRecipe& recipe) {
-        return recipe.name == body && recipe.material.youngs_modulus > 0 && recipe.material.poisson == 0;
+        return recipe.name == body && recipe.material.youngs_modulus > 0 && !is_tissue(recipe.material);
     });
 }
 
@@ -267,10 +268,12 @@ std::vector<std::string> notes_after(const Scene& scene, const Models& made, con
     std::vector<std::string> notes;
     for (const Report::Body& body : report.bodies)
         if (body.inverted_cells > 0)
-            notes.push_back(fmt::format(
-                "body {}: up to {} of {} cells were inside out; {}, or use more nodes{}", body.name,
-                body.inverted_cells, body.cells, how_to_ask_less(scene, report),
-                is_of_springs(scene, body.name) ? ", or give it poisson = 0.45: such cells turn back" : ""));
+            notes.push_back(
+                fmt::format("body {}: up to {} of {} cells were inside out; {}, or use more nodes{}",
+                            body.name, body.inverted_cells, body.cells, how_to_ask_less(scene, report),
+                            could_be_tissue(scene, body.name)
+                                ? ", or make it of tissue (model = \"tissue\"): such cells turn back"
+                                : ""));
     look_for_lost_bodies(scene, made, play, notes);
     look_at_tools(scene, report, notes);
     look_at_thin_obstacles(scene, made, report, notes);

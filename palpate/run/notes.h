@@ -21,8 +21,8 @@ std::vector<std::string> notes_after(const Scene& scene, const Models& made, con
 /// are given by their indices.
 std::size_t held_at_start(const Scene& scene, const Models& made, std::size_t collider, std::size_t body);
 
-/// Advice for a message after a divergence: to move a collider in which a body lies, or to press it less
-/// hard.
+/// Advice after a divergence, or where cells are inside out: to move a collider in which a body lies, or to
+/// press it less hard.
 std::string how_to_ask_less(const Scene& scene, const Report& report);
 
 }  // namespace palpate

@@ -312,8 +312,9 @@ void Play::record(const Acting& on, double time, double seconds) {
     }
     // From a GPU nodes are not fetched for this alone.
     for (std::size_t m = 0; mapped_ && m < world_.count(); ++m) {
-        std::size_t& worst = report_.bodies[m].inverted_cells;
-        worst = std::max(worst, inverted_cells(made_.models[m].body, nodes(m).positions));
+        Report::Body& body = report_.bodies[m];
+        body.inverted_now = inverted_cells(made_.models[m].body, nodes(m).positions);
+        body.inverted_cells = std::max(body.inverted_cells, body.inverted_now);
     }
 }
 

@@ -21,6 +21,7 @@ struct Report {
         double elastic_energy = 0;        // J, at the end
         double largest_speed = 0;         // m/s, at the end of any frame
         std::size_t inverted_cells = 0;   // at the end of the worst frame
+        std::size_t inverted_now = 0;     // at the end of the last
         std::size_t held_at_start = 0;    // free nodes inside colliders at the start
         std::vector<std::string> mended;  // the steps that made its surface
     };

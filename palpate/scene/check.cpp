@@ -63,23 +63,32 @@ void check(const Region& region, const BodyRecipe& body, const SceneSource& sour
     require.one_of({"youngs_modulus", "stiffness", "factor"}, "give it one");
     require("", region.factor > 0 || (!body.springs && !body.is_cloth()),
             "springs of several kinds have neither one modulus nor one stiffness", "give it a factor");
-    require("stiffness", region.stiffness == 0 || body.material.poisson == 0,
+    require("stiffness", region.stiffness == 0 || !is_tissue(body.material),
             "a stiffness in a body of tissue", "give it youngs_modulus or a factor");
 }
 
 // A named tissue is made of cells of a solid and has a modulus.
 void check_tissue(const BodyRecipe& body, const Require& require) {
     require("tissue", !body.is_cloth(), "cloth of a tissue", "give it springs and a density in kg/m²");
-    for (const char* key : {"stiffness", "springs", "bending", "links"})
+    for (const char* key : {"stiffness", "springs", "bending"})
         require(key, !require.has(key), std::string(key) + " beside tissue",
                 "remove one: a tissue has no springs");
     require("mass", !require.has("density") || !require.has("mass"), "both density and mass", "remove one");
 }
 
+// Springs and tissue do not go together.
+void check_model(const BodyRecipe& body, const Require& require) {
+    const bool of_tissue = body.material.model == MaterialModel::tissue;
+    require("links", !of_tissue || !require.has("links"), "links of a body of tissue, which has no springs",
+            "remove it, or write model = \"springs\"");
+    require("poisson", of_tissue || !require.has("poisson"), "poisson of springs, which have 1/4",
+            "remove it, or the model");
+}
+
 // The stiffness of springs: a modulus, one stiffness, or one for each kind.
 void check_springs(const BodyRecipe& body, const Require& require) {
     if (body.springs || body.is_cloth()) {
-        for (const char* key : {"youngs_modulus", "stiffness", "poisson"})
+        for (const char* key : {"youngs_modulus", "stiffness", "poisson", "model"})
             require(key, !require.has(key), "springs of several kinds beside " + std::string(key),
                     "remove it, and write springs = { structural = 100, shear = 50, flexion = 5 }");
         require("springs", body.is_cloth() || body.dims, "springs are for cloth, sheets and dims",
@@ -89,10 +98,9 @@ void check_springs(const BodyRecipe& body, const Require& require) {
         require.one_of({"youngs_modulus", "stiffness"},
                        "give it one: brain has about 1e4 Pa; or give the N/m of each spring");
     }
-    require("poisson", body.material.youngs_modulus > 0 || !require.has("poisson"),
-            "poisson without youngs_modulus", "give the modulus too, in Pa");
-    require("links", body.material.poisson == 0 || !require.has("links"),
-            "links beside poisson, where it has no effect", "remove it");
+    require(require.has("poisson") ? "poisson" : "model",
+            body.material.youngs_modulus > 0 || body.material.model != MaterialModel::tissue,
+            "tissue without youngs_modulus", "give the modulus, in Pa");
     require("bending", body.sheet || !require.has("bending"),
             "bending of a body that is not a sheet of triangles",
             "give cloth flexion springs, or use sheet = true with a surface");
@@ -172,6 +180,7 @@ void check(const BodyRecipe& body, const SceneSource& source) {
                 "cage is not at least 2 along each axis (a last 1 is a sheet) and at most 10 million nodes",
                 "change it");
     }
+    check_model(body, require);
     if (require.has("tissue")) {
         check_tissue(body, require);
     } else {

@@ -46,7 +46,6 @@ size = 0.2
 centre = true
 nodes = 5000
 youngs_modulus = 50000
-poisson = 0.45
 density = 1000
 damping = 2
 pin = {{ below = 0.1 }}

@@ -140,8 +140,10 @@ void read_tissue(Reader& read, Material& material) {
 void read_material(Reader& read, BodyRecipe& body) {
     read_tissue(read, body.material);
     read("youngs_modulus", body.material.youngs_modulus, modulus);
-    read("poisson", body.material.poisson,
-         between(0.01, 0.499, "", "organs have 0.45 to 0.49; without it the body is of springs"));
+    read("poisson", body.material.poisson, between(0, 0.499, "", "organs have 0.45 to 0.49"));
+    read("model", body.material.model);
+    if (read.has("poisson") && body.material.model == MaterialModel::automatic)
+        body.material.model = MaterialModel::tissue;
     read("stiffness", body.material.stiffness, stiffness);
     read.table("springs", [&](Reader& inside) { read_fields(inside, body.springs.emplace()); });
     read("bending", body.bending, zero_or_more("N·m", "cotton has about 1e-5 N·m").usual(1e-9, 10));
@@ -428,11 +430,15 @@ std::vector<std::string> target(const Change& change) {
 // Removes the keys that exclude a changed one; a new tissue removes the numbers given instead of its own.
 void remove_excluded(toml::table& table, const std::string& key) {
     if (key == "tissue")
-        for (const char* other :
-             {"youngs_modulus", "poisson", "stiffness", "springs", "links", "density", "mass", "damping"})
+        for (const char* other : {"youngs_modulus", "poisson", "model", "stiffness", "springs", "links",
+                                  "density", "mass", "damping"})
             table.erase(other);
     for (const char* of_springs : {"stiffness", "springs", "links"})
-        if (key == of_springs) table.erase("poisson");
+        if (key == of_springs)
+            for (const char* of_tissue : {"poisson", "tissue", "model"}) table.erase(of_tissue);
+    if (key == "model" || key == "poisson")
+        for (const char* other : {"model", "poisson", "links"})
+            if (key != other) table.erase(other);
     const std::vector<std::string_view> choices[] = {{"density", "mass"},
                                                      {"youngs_modulus", "stiffness", "springs", "factor"},
                                                      {"nodes", "spacing"},

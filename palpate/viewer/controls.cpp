@@ -1,5 +1,6 @@
 #include "palpate/viewer/controls.h"
 
+#include "palpate/run/notes.h"
 #include "palpate/run/run.h"
 #include "palpate/viewer/style.h"
 
@@ -98,7 +99,7 @@ void show_readings(const Viewer& viewer) {
     ImGui::Text("%.0f pictures a second, %.2f of real time", ImGui::GetIO().Framerate, readings.pace.mean());
     about(fmt::format("the three together: {:.1f} ms", sum).c_str());
     if (readings.energy)
-        ImGui::Text("energy %.3g J moving, %.3g J in springs", readings.energy->kinetic,
+        ImGui::Text("energy %.3g J moving, %.3g J elastic", readings.energy->kinetic,
                     readings.energy->elastic);
     else
         ImGui::TextColored(quiet, "energy: on the GPU");
@@ -272,7 +273,23 @@ void Controls::show_step(Viewer& viewer) {
         ImGui::TextColored(quiet, "stable up to %.3f ms, untouched", 1000 * bound);
 }
 
+namespace {
+
+void show_inverted_cells(const Viewer& viewer, std::size_t b) {
+    const Experiment& experiment = *viewer.experiment();
+    const Report::Body& body = experiment.report().bodies[b];
+    if (body.inverted_now == 0) return;
+    const std::string remedy = viewer.is_holding() ? "press or pull it less hard"
+                                                   : how_to_ask_less(experiment.scene(), experiment.report());
+    ImGui::PushStyleColor(ImGuiCol_Text, warning);
+    ImGui::TextWrapped("%zu of %zu cells are inside out: %s", body.inverted_now, body.cells, remedy.c_str());
+    ImGui::PopStyleColor();
+}
+
+}  // namespace
+
 void Controls::show_body(Viewer& viewer, std::size_t b) {
+    show_inverted_cells(viewer, b);
     const BodyRecipe recipe = viewer.experiment()->scene().bodies[b];  // a change makes another scene
     auto change = [&](const std::string& key, const std::string& value) {
         viewer.change({fmt::format("body.{}.{}={}", b + 1, key, value)});
@@ -289,7 +306,7 @@ void Controls::show_body(Viewer& viewer, std::size_t b) {
     };
     amount("Young's mod.", "youngs_modulus", material.youngs_modulus, "%.3g Pa");
     if (float ratio = material.poisson;
-        ratio > 0 && sliders_.slide_and_let_go("Poisson's ratio", ratio, 0.01f, 0.499f, "%.3f"))
+        is_tissue(material) && sliders_.slide_and_let_go("Poisson's ratio", ratio, 0, 0.499f, "%.3f"))
         change("poisson", number(ratio));
     amount("stiffness", "stiffness", material.stiffness, "%.3g N/m");
     if (recipe.springs) {

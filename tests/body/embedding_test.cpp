@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 5000, .density = 1000};
+const Material of_springs{.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs};
 
 // The mappings that a body can bear.
 std::vector<Mapping> modes_of(const Body& body) {
@@ -56,7 +56,7 @@ TEST(Embedding, TheRestSurfaceMapsToItself) {
     std::vector<Carrier> all = carriers();
     const Mesh mesh = organ();
     for (float spacing : {0.004f, 0.011f, 0.03f})
-        all.push_back({"organ", mesh, lattice(mesh, {.spacing = spacing, .material = tissue}), {}, {}});
+        all.push_back({"organ", mesh, lattice(mesh, {.spacing = spacing, .material = of_springs}), {}, {}});
     for (const Carrier& c : all)
         for (Mapping mode : modes_of(c.body)) {
             if (mode == Mapping::one_to_one) continue;  // see the next test
@@ -104,7 +104,7 @@ Mesh transformed(Mesh mesh, const mat3& way, vec3 shift) {
 TEST(Embedding, ABodyMayLieTurned) {
     Mesh mesh = ellipsoid({0.05f, 0.04f, 0.06f}, 16);
     give_tangents(mesh);
-    const Body body = lattice(mesh, {.spacing = 0.011f, .material = tissue});
+    const Body body = lattice(mesh, {.spacing = 0.011f, .material = of_springs});
     const Deformation bending = bend({0, 0, 1}, {1, 0, 0}, 0.12);
     for (const mat3& way : ways_to_lie()) {
         const vec3 shift(0.02f, -0.01f, 0.03f);
@@ -142,7 +142,7 @@ TEST(Embedding, ABodyMayLieTurned) {
 }
 
 TEST(Hull, LooksOutwardsHoweverItLies) {
-    const Body body = lattice(organ(), {.spacing = 0.011f, .material = tissue});
+    const Body body = lattice(organ(), {.spacing = 0.011f, .material = of_springs});
     const Mesh straight = hull_mesh(body);
     for (const mat3& way : ways_to_lie()) {
         Body lying = body;
@@ -349,7 +349,7 @@ Embedding first_of(Embedding skin, std::size_t count) {
 TEST(Embedding, EachVertexIsTheSameToTheBitBesideAnyOther) {
     Mesh surface = organ();
     give_tangents(surface);
-    const Body body = lattice(surface, {.nodes = 900, .material = tissue});
+    const Body body = lattice(surface, {.nodes = 900, .material = of_springs});
     std::vector<vec3> nodes;
     for (vec3 p : body.positions)
         nodes.push_back(p + 0.004f * vec3(std::sin(90 * p.y), std::cos(70 * p.z), p.x));
@@ -436,7 +436,7 @@ TEST(Embedding, NoVertexHangsAcrossAGap) {
             const float from = 0.033f + gap * h;
             const Mesh right = block({from, 0, 0}, {from + 0.03f + shift * h, 0.06f, 0.06f}, 12);
             const Mesh mesh = both(left, right);
-            const Body body = lattice(mesh, {.spacing = h, .material = tissue});
+            const Body body = lattice(mesh, {.spacing = h, .material = of_springs});
             // If the two share no node they can be told apart by the middle of the gap.
             const float middle = 0.033f + 0.5f * gap * h;
             std::vector<vec3> nodes = body.positions;
@@ -456,7 +456,7 @@ TEST(Embedding, NoVertexHangsAcrossAGap) {
 }
 
 TEST(Embedding, ApproximateNormalsPointOutward) {
-    const Body body = lattice({5, 5, 5}, 0.01f, tissue);
+    const Body body = lattice({5, 5, 5}, 0.01f, of_springs);
     const std::vector<vec3> normals = approximate_normals(body, body.positions);
     for (std::size_t i = 0; i < body.count(); ++i) {
         const vec3 out = vec3(body.at[i]) - 2.0f;
@@ -513,7 +513,7 @@ std::string refusal(const Body& body, Mapping mode) {
 }
 
 TEST(Embedding, WhatNothingCanHangOnIsRefused) {
-    const Body thread = lattice({5, 1, 1}, 0.01f, tissue);
+    const Body thread = lattice({5, 1, 1}, 0.01f, of_springs);
     for (const auto& mode : names(Mapping{})) EXPECT_NE(refusal(thread, mode.value), "") << mode.name;
     const Body sheet = quilt_on_a_cloth().body;
     EXPECT_NE(refusal(sheet, Mapping::trilinear).find("trilinear"), std::string::npos);

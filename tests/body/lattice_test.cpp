@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 5000, .density = 1000};
+const Material of_springs{.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs};
 
 // What one end of a spring says of it, the other says too.
 void expect_symmetric(const Body& body) {
@@ -38,7 +38,7 @@ void expect_symmetric(const Body& body) {
 TEST(Lattice, CountsOfAPlainBox) {
     for (ivec3 d :
          {ivec3(1, 1, 1), ivec3(2, 1, 1), ivec3(3, 2, 1), ivec3(2, 2, 2), ivec3(7, 8, 9), ivec3(17, 3, 15)}) {
-        const Body body = lattice(d, 0.01f, tissue);
+        const Body body = lattice(d, 0.01f, of_springs);
         const ivec3 c = d - 1;
         EXPECT_EQ(body.count(), std::size_t(d.x * d.y * d.z));
         EXPECT_EQ(body.cells.size(), std::size_t(c.x * c.y * c.z));
@@ -50,14 +50,14 @@ TEST(Lattice, CountsOfAPlainBox) {
 }
 
 TEST(Lattice, MassOfABoxIsDensityTimesItsVolume) {
-    const Body body = lattice({7, 8, 9}, 0.01f, tissue);
+    const Body body = lattice({7, 8, 9}, 0.01f, of_springs);
     EXPECT_NEAR(mass(body), 1000 * 0.06 * 0.07 * 0.08, 1e-6);
     const Body given = lattice({7, 8, 9}, 0.01f, {.youngs_modulus = 1, .mass = 2.5f});
     EXPECT_NEAR(mass(given), 2.5, 1e-5);
 }
 
 TEST(Lattice, SharesAreThoseOfTheCellsAround) {
-    const Body body = lattice({3, 3, 3}, 1, tissue);
+    const Body body = lattice({3, 3, 3}, 1, of_springs);
     auto quarters = [&](ivec3 at, ivec3 offset) {
         for (std::size_t i = 0; i < body.count(); ++i)
             for (std::size_t l = 0; l < 18; ++l)
@@ -74,7 +74,7 @@ TEST(Lattice, SharesAreThoseOfTheCellsAround) {
 }
 
 TEST(Lattice, OneNodeThickPartsKeepTheirSprings) {
-    const Body sheet = lattice({4, 5, 1}, 1, tissue);
+    const Body sheet = lattice({4, 5, 1}, 1, of_springs);
     EXPECT_EQ(sheet.cells.size(), 0u);
     for (std::size_t i = 0; i < sheet.count(); ++i)
         for (std::size_t l = 0; l < 18; ++l)
@@ -83,7 +83,7 @@ TEST(Lattice, OneNodeThickPartsKeepTheirSprings) {
 }
 
 TEST(Lattice, StiffnessFromTheModulus) {
-    const Body body = lattice({3, 3, 3}, 0.02f, tissue);
+    const Body body = lattice({3, 3, 3}, 0.02f, of_springs);
     EXPECT_NEAR(body.grid()->links[0].stiffness, 0.4 * 5000 * 0.02, 1e-4);
     EXPECT_NEAR(body.grid()->links[6].rest, 0.02 * std::sqrt(2), 1e-8);
 }
@@ -94,7 +94,7 @@ TEST(Lattice, AStretchedBarIsInBalanceAndShowsItsModulus) {
     for (int n : {2, 3, 5, 11}) {
         const int length = 9;
         const float h = 0.01f;
-        const Body body = lattice({length, n, n}, h, tissue);
+        const Body body = lattice({length, n, n}, h, of_springs);
         const double strain = 1e-3;
         std::vector<dvec3> p;
         for (vec3 rest : body.positions)
@@ -116,7 +116,7 @@ TEST(Lattice, AStretchedBarIsInBalanceAndShowsItsModulus) {
 TEST(Lattice, MeetsTheNumberOfNodesAndTheMass) {
     for (int nodes : {500, 3000, 20'000}) {
         const Mesh mesh = ellipsoid({0.05f, 0.04f, 0.06f}, 60);
-        const Body body = lattice(mesh, {.nodes = nodes, .material = tissue});
+        const Body body = lattice(mesh, {.nodes = nodes, .material = of_springs});
         EXPECT_LE(std::abs(double(body.count()) / nodes - 1), 0.05) << nodes;
         EXPECT_LE(std::abs(mass(body) / (1000 * volume(mesh)) - 1), 0.02) << nodes;
         // The cells themselves have the mesh's volume too: mass is not merely made to fit.
@@ -128,7 +128,7 @@ TEST(Lattice, MeetsTheNumberOfNodesAndTheMass) {
 
 TEST(Lattice, TakesTheSpacingItIsGiven) {
     const Body body =
-        lattice(block(vec3(0), vec3(0.04f, 0.03f, 0.05f)), {.spacing = 0.01f, .material = tissue});
+        lattice(block(vec3(0), vec3(0.04f, 0.03f, 0.05f)), {.spacing = 0.01f, .material = of_springs});
     EXPECT_FLOAT_EQ(body.spacing, 0.01f);
     EXPECT_EQ(body.cells.size(), 4u * 3u * 5u);
 }
@@ -139,7 +139,7 @@ TEST(Lattice, NothingThinVanishes) {
     const float h = 0.01f;
     const Mesh mesh =
         both(ellipsoid(vec3(0.03f), 40), block({-0.08f, -0.05f, -0.001f}, {0.08f, 0.05f, 0.001f}, 12));
-    const Body body = lattice(mesh, {.spacing = h, .material = tissue});
+    const Body body = lattice(mesh, {.spacing = h, .material = of_springs});
     for (float x = -0.079f; x < 0.08f; x += 0.004f)
         for (float y = -0.049f; y < 0.05f; y += 0.004f) {
             bool covered = false;
@@ -172,22 +172,22 @@ TEST(Lattice, NothingThinVanishes) {
 
 TEST(Lattice, AThinSheetAloneBecomesOneCellThick) {
     const Body body =
-        lattice(block(vec3(0), {0.1f, 0.1f, 1e-4f}, 10), {.spacing = 0.01f, .material = tissue});
+        lattice(block(vec3(0), {0.1f, 0.1f, 1e-4f}, 10), {.spacing = 0.01f, .material = of_springs});
     EXPECT_EQ(body.cells.size(), 100u);
     EXPECT_NEAR(mass(body), 1000 * 1e-6, 1e-8);
-    EXPECT_GT(lattice(block(vec3(0), vec3(0.1f)), {.spacing = 1, .material = tissue}).cells.size(), 0u);
+    EXPECT_GT(lattice(block(vec3(0), vec3(0.1f)), {.spacing = 1, .material = of_springs}).cells.size(), 0u);
 }
 
 TEST(Lattice, RefusesWhatCannotBeFilled) {
     Mesh flat;
     flat.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     flat.triangles = {{0, 1, 2}};
-    EXPECT_THROW(lattice(flat, {.material = tissue}), Error);
-    EXPECT_THROW(lattice(ellipsoid(vec3(1), 20), {.spacing = 1e-4f, .material = tissue}), Error);
+    EXPECT_THROW(lattice(flat, {.material = of_springs}), Error);
+    EXPECT_THROW(lattice(ellipsoid(vec3(1), 20), {.spacing = 1e-4f, .material = of_springs}), Error);
 }
 
 TEST(Select, PinsByHeightPlaceAndBox) {
-    Body body = lattice({4, 11, 4}, 0.01f, tissue);
+    Body body = lattice({4, 11, 4}, 0.01f, of_springs);
     EXPECT_EQ(nodes_below(body, 0.1f, {0, -1, 0}).size(), 2u * 16u);
     EXPECT_EQ(nodes_below(body, 0, {0, -1, 0}).size(), 16u);
     EXPECT_EQ(nodes_near(body, {0.0101f, 0.0202f, 0}).size(), 1u);
@@ -200,7 +200,7 @@ TEST(Select, PinsByHeightPlaceAndBox) {
 }
 
 TEST(Hull, OfABoxIsClosedAndTurnsOutward) {
-    const Body body = lattice({4, 3, 5}, 0.01f, tissue);
+    const Body body = lattice({4, 3, 5}, 0.01f, of_springs);
     const Mesh mesh = hull_mesh(body);
     EXPECT_NEAR(volume(mesh), 0.03 * 0.02 * 0.04, 1e-9);
     EXPECT_EQ(mesh.triangles.size(), 2u * 2u * (3 * 2 + 2 * 4 + 3 * 4));

@@ -30,7 +30,7 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 2000, .density = 1000};
+const Material of_springs{.youngs_modulus = 2000, .density = 1000, .model = MaterialModel::springs};
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 
 // Meshes that no function may take as they are.
@@ -46,11 +46,11 @@ std::vector<Mesh> unsound() {
 }
 
 TEST(Refusal, OfMeshesThatDoNotHold) {
-    const Body body = lattice({4, 4, 4}, 0.05f, tissue);
+    const Body body = lattice({4, 4, 4}, 0.05f, of_springs);
     const Scratch scratch;
     for (const Mesh& mesh : unsound()) {
         expect_refused("the mesh", [&] { check(mesh, "the mesh"); });
-        expect_refused("lattice", [&] { lattice(mesh, {.spacing = 0.05f, .material = tissue}); });
+        expect_refused("lattice", [&] { lattice(mesh, {.spacing = 0.05f, .material = of_springs}); });
         expect_refused("cloth", [&] { cloth(mesh, {.density = 1}); });
         expect_refused("the body", [&] { embed(mesh, body); });
         expect_refused("distance", [&] { SignedDistance(mesh, 0.05f); });
@@ -71,9 +71,9 @@ TEST(Refusal, OfNumbersOfWhichNothingCanBeMade) {
         expect_refused("the material", [&] { lattice(mesh, {.spacing = 0.05f, .material = odd}); });
         if (odd != Material{}) expect_refused("the material", [&] { lattice({3, 3, 3}, 0.01f, odd); });
     }
-    for (const LatticeSettings& odd :
-         {LatticeSettings{.nodes = 0, .material = tissue}, LatticeSettings{.spacing = -1, .material = tissue},
-          LatticeSettings{.spacing = none, .material = tissue}})
+    for (const LatticeSettings& odd : {LatticeSettings{.nodes = 0, .material = of_springs},
+                                       LatticeSettings{.spacing = -1, .material = of_springs},
+                                       LatticeSettings{.spacing = none, .material = of_springs}})
         expect_refused("spacing", [&] { lattice(mesh, odd); });
     // A box of which nothing is said is a cage that somebody else moves.
     const Body cage = lattice({3, 3, 3}, 0.1f, {});
@@ -81,16 +81,16 @@ TEST(Refusal, OfNumbersOfWhichNothingCanBeMade) {
     EXPECT_NO_THROW(embed(mesh, cage));
     expect_refused("the material", [] { lattice({3, 3, 3}, 0.01f, SpringKinds{1, 1, 1}, {}); });
     for (ivec3 dims : {ivec3(-1, 3, 3), ivec3(0, 5, 5), ivec3(1 << 20)})
-        expect_refused("nodes", [&] { lattice(dims, 0.01f, tissue); });
+        expect_refused("nodes", [&] { lattice(dims, 0.01f, of_springs); });
     for (float spacing : {0.0f, -1.0f, none}) {
-        expect_refused("spacing", [&] { lattice({3, 3, 3}, spacing, tissue); });
+        expect_refused("spacing", [&] { lattice({3, 3, 3}, spacing, of_springs); });
         expect_refused("spacing", [&] { cloth({3, 3}, spacing, {.density = 1}); });
     }
     for (ivec2 dims : {ivec2(0, 3), ivec2(3, -1), ivec2(1 << 20)})
         expect_refused("nodes", [&] { cloth(dims, 0.01f, {.density = 1}); });
     expect_refused("density", [] { cloth({3, 3}, 0.01f, {}); });
     expect_refused("masses", [] { net(std::vector<vec3>(2), std::vector<float>{1}, {}, {}); });
-    Body body = lattice({3, 3, 3}, 0.01f, tissue);
+    Body body = lattice({3, 3, 3}, 0.01f, of_springs);
     expect_refused("node 27 of 27", [&] { pin(body, std::vector<int>{3, 27}); });
     EXPECT_GT(body.inverse_mass[3], 0);
     expect_refused("factors", [&] { strengthen(body, std::vector<float>(3, 1)); });
@@ -105,7 +105,7 @@ TEST(Refusal, OfNumbersOfWhichNothingCanBeMade) {
 
 TEST(Refusal, OfTooFewNodes) {
     const Mesh mesh = ellipsoid(vec3(0.1f), 6);
-    const Body body = lattice(mesh, {.spacing = 0.05f, .material = tissue});
+    const Body body = lattice(mesh, {.spacing = 0.05f, .material = of_springs});
     const std::vector<vec3> facing = approximate_normals(body, body.positions);
     std::vector<vec3> positions, normals;
     const std::span<const vec3> few(body.positions.data(), body.count() - 1);

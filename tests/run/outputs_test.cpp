@@ -28,7 +28,7 @@ TEST(Run, LongStepsStillMakeEvenSequences) {
     settings.sequence = scratch / "s.ply";
     settings.sequence_every = 0.049;  // three frames of 1/60 s
     const Report report =
-        run(scene({"simulation.step=0.012", "body.block.youngs_modulus=200", "tool.finger.stiffness=5"}),
+        run(scene({"simulation.step=0.012", "body.block.youngs_modulus=100", "tool.finger.stiffness=5"}),
             settings);
     EXPECT_EQ(report.frames, 7);
     EXPECT_EQ(scratch.entries(), 2u);  // at 0 and at 0.06 s

@@ -246,7 +246,7 @@ TEST(Play, AStifferRegionDeformsLess) {
 
 TEST(Play, WhenOneBodyDivergesAllGoBackToTheSameMoment) {
     // The first falls freely; the second is twisted faster than its step can bear.
-    Scene two = scene("[simulation]\nstep = 0.004\nduration = 1\n" + block("falling") + block("wild") + R"(
+    Scene two = scene("[simulation]\nstep = 0.002\nduration = 1\n" + block("falling") + block("wild") + R"(
 [[move]]
 body = "wild"
 nodes = { box = [[-1, -1, -1], [0.001, 1, 1]] }

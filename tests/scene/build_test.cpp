@@ -313,10 +313,13 @@ std::vector<int> strengthened(const Body& body, float factor) {
 
 TEST(Build, RegionsSayHowStiffTheyAreInThreeWays) {
     const std::string where = "[[body.region]]\nbox = [[-1, -1, -1], [0.001, 1, 1]]\n";
-    const auto by_factor = strengthened(make(cube + where + "factor = 3\n").models[0].body, 3);
+    const std::string of_springs = cube + "model = \"springs\"\n" + where;
+    const auto by_factor = strengthened(make(of_springs + "factor = 3\n").models[0].body, 3);
     EXPECT_EQ(by_factor.size(), 36u);
+    EXPECT_EQ(strengthened(make(of_springs + "youngs_modulus = 15000\n").models[0].body, 3), by_factor);
+    EXPECT_EQ(strengthened(make(of_springs + "stiffness = 24\n").models[0].body, 3), by_factor);
     EXPECT_EQ(strengthened(make(cube + where + "youngs_modulus = 15000\n").models[0].body, 3), by_factor);
-    EXPECT_EQ(strengthened(make(cube + where + "stiffness = 24\n").models[0].body, 3), by_factor);
+    EXPECT_THROW(make(cube + where + "stiffness = 24\n"), Error);
     // Of two, the last counts.
     const Body both =
         make(cube + where + "factor = 3\n[[body.region]]\nnodes = [0, 1]\nfactor = 5\n").models[0].body;

@@ -218,15 +218,37 @@ TEST(Scene, ATissueHasItsNameAndNoSprings) {
                  {"no tissue \"brian\"", "test.toml, line 5", "did you mean \"brain\"?", "liver, kidney"});
     expect_words(refusal(bare + "tissue = 3\n"), {"cube.tissue is 3, not a string"});
     expect_words(refusal(bare + "material = \"brain\"\n"), {"did you mean \"tissue\"?"});
-    for (const std::string other : {"stiffness = 3", "springs = { structural = 1 }", "links = \"equal\""})
+    for (const std::string other : {"stiffness = 3", "springs = { structural = 1 }"})
         expect_words(refusal(bare + "tissue = \"brain\"\n" + other + "\n"),
                      {"beside tissue", "line 6", "remove one"});
+    expect_words(refusal(bare + "tissue = \"brain\"\nlinks = \"equal\"\n"),
+                 {"links of a body of tissue", "line 6", "model = \"springs\""});
     expect_words(refusal(bare + "tissue = \"brain\"\ndensity = 900\nmass = 1\n"), {"both density and mass"});
     expect_words(refusal("[[body]]\ncloth = [4, 4]\nspacing = 0.01\ntissue = \"skin\"\n"),
                  {"cloth of a tissue", "line 4"});
 }
 
 // "small" has a modulus and a density.
+TEST(Scene, ASolidIsOfTissueUnlessItsSpringsAreMeant) {
+    auto material = [](const std::string& more, const std::vector<Change>& changes = {}) {
+        return parse(small + more, changes).bodies[0].material;
+    };
+    EXPECT_TRUE(is_tissue(material("")));
+    EXPECT_EQ(material("").poisson, 0.45f);
+    EXPECT_TRUE(is_tissue(material("model = \"tissue\"\n")));
+    EXPECT_TRUE(is_tissue(material("model = \"springs\"\n", {"body.cube.poisson=0.3"})));
+    for (const char* of_springs : {"model = \"springs\"\n", "links = \"cells\"\n", "links = \"equal\"\n"}) {
+        EXPECT_FALSE(is_tissue(material(of_springs))) << of_springs;
+        expect_words(refusal(small + of_springs + "poisson = 0.4\n"), {"body cube", "springs", "remove it"});
+    }
+    EXPECT_FALSE(is_tissue(material("poisson = 0.3\n", {"body.cube.model=springs"})));
+    EXPECT_FALSE(is_tissue(material("poisson = 0.3\n", {"body.cube.stiffness=3"})));
+    EXPECT_FALSE(is_tissue(parse(bare + "tissue = \"brain\"\nmodel = \"springs\"\n").bodies[0].material));
+    expect_words(refusal(bare + "density = 1\nstiffness = 1\nmodel = \"tissue\"\n"),
+                 {"tissue without youngs_modulus", "line 7"});
+    expect_words(refusal(small + "model = \"solid\"\n"), {"model", "line 8", "tissue", "springs"});
+}
+
 TEST(Scene, AChangeOfTissueTakesAwayTheOldMaterial) {
     const Material skin = tissue_named("skin").material();
     EXPECT_EQ(parse(small, {"body.cube.tissue=skin"}).bodies[0].material, skin);

@@ -87,7 +87,7 @@ Body mirrored(Body body) {
 }  // namespace
 
 std::vector<NamedBody> odd_bodies() {
-    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = tissue});
+    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = of_springs});
     std::vector<vec3> corners = {
         {0, 0, 0}, {0.03f, 0, 0}, {0, 0.03f, 0}, {0, 0, 0.03f}, {0.02f, 0.02f, 0.02f}};
     std::vector<Spring> edges;
@@ -100,19 +100,20 @@ std::vector<NamedBody> odd_bodies() {
     stiff_linen.bending = 2e-4f;
     stiff_linen.stiffness.flexion = 0;
     const Body bending_bowl = cloth(bowl, stiff_linen);
-    const Body solid_organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 150, .material = solid});
+    const Body solid_organ =
+        lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 150, .material = of_tissue});
     return {
-        {"box", lattice({9, 7, 8}, 0.01f, tissue)},
-        {"box with whole links", with_whole_links(lattice({8, 9, 5}, 0.01f, tissue))},
-        {"battered box", battered(lattice({10, 6, 7}, 0.01f, tissue), 1)},
-        {"box with strength", with_strength(lattice({7, 6, 5}, 0.01f, tissue), 2)},
-        {"stitched box", stitched(lattice({5, 6, 4}, 0.01f, tissue))},
+        {"box", lattice({9, 7, 8}, 0.01f, of_springs)},
+        {"box with whole links", with_whole_links(lattice({8, 9, 5}, 0.01f, of_springs))},
+        {"battered box", battered(lattice({10, 6, 7}, 0.01f, of_springs), 1)},
+        {"box with strength", with_strength(lattice({7, 6, 5}, 0.01f, of_springs), 2)},
+        {"stitched box", stitched(lattice({5, 6, 4}, 0.01f, of_springs))},
         {"organ", organ},
         {"battered organ", battered(organ, 3)},
         {"organ with strength", with_strength(organ, 4)},
-        {"turned box", turned(lattice({6, 5, 4}, 0.01f, tissue))},
+        {"turned box", turned(lattice({6, 5, 4}, 0.01f, of_springs))},
         {"turned organ with strength", turned(with_strength(organ, 7))},
-        {"battered box, mirrored", mirrored(battered(lattice({5, 6, 7}, 0.01f, tissue), 8))},
+        {"battered box, mirrored", mirrored(battered(lattice({5, 6, 7}, 0.01f, of_springs), 8))},
         {"turned volume, mirrored",
          mirrored(turned(lattice({6, 5, 4}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})))},
         {"volume of 2012", lattice({7, 5, 6}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f, .damping = 20})},
@@ -125,10 +126,10 @@ std::vector<NamedBody> odd_bodies() {
         {"net", net_body},
         {"sheet that bends", bending_bowl},
         {"battered sheet that bends", battered(bending_bowl, 9)},
-        {"solid box", lattice({6, 4, 5}, 0.01f, solid)},
+        {"solid box", lattice({6, 4, 5}, 0.01f, of_tissue)},
         {"battered solid organ with strength", battered(with_strength(solid_organ, 12), 11)},
         {"turned solid organ", turned(solid_organ)},
-        {"stitched solid", stitched(lattice({5, 6, 4}, 0.01f, solid))},
+        {"stitched solid", stitched(lattice({5, 6, 4}, 0.01f, of_tissue))},
         {"cloth with hinges", hinged(cloth({12, 7}, 0.01f, linen), 2e-4f)}};
 }
 

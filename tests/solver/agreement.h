@@ -11,8 +11,9 @@
 
 namespace palpate {
 
-inline const Material tissue{.youngs_modulus = 2000, .density = 1000, .damping = 20};
-inline const Material solid{.youngs_modulus = 2000, .poisson = 0.45f, .density = 1000, .damping = 20};
+inline const Material of_springs{
+    .youngs_modulus = 2000, .density = 1000, .damping = 20, .model = MaterialModel::springs};
+inline const Material of_tissue{.youngs_modulus = 2000, .density = 1000, .damping = 20};
 inline const ClothSettings linen{.density = 0.3f, .damping = 20};
 
 struct NamedBody {

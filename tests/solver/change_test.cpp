@@ -16,7 +16,7 @@ namespace palpate {
 namespace {
 
 Body organ() {
-    Body body = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 500, .material = tissue});
+    Body body = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 500, .material = of_springs});
     for (std::size_t i = 0; i < body.count(); i += 9) body.inverse_mass[i] = 0;
     return body;
 }
@@ -47,8 +47,8 @@ double whole_mass(const Body& body) {
 
 TEST(Edits, OfCellsLeaveTheLatticeOfTheRest) {
     // A box without its last layer is a smaller box: the same shares, masses and outside.
-    Body body = lattice({5, 4, 6}, 0.01f, tissue);
-    const Body whole = body, smaller = lattice({5, 4, 5}, 0.01f, tissue);
+    Body body = lattice({5, 4, 6}, 0.01f, of_springs);
+    const Body whole = body, smaller = lattice({5, 4, 5}, 0.01f, of_springs);
     Edit edit;
     for (int c = 0; c < int(body.cells.size()); ++c)
         if (whole.at[std::size_t(whole.cells[std::size_t(c)][0])].z == 4) edit.cells.push_back(c);
@@ -99,7 +99,7 @@ TEST(Edits, HingesGoWithTheirTriangles) {
     EXPECT_EQ(change.nodes, (std::vector{0, 1, 3, 4, 5}));
 
     // On a box, whose cells take nodes with them.
-    body = lattice({3, 2, 2}, 0.01f, tissue);
+    body = lattice({3, 2, 2}, 0.01f, of_springs);
     body.terms.push_back(Bending{{{0, 1, 3, 6, 1}, {1, 2, 4, 7, 1}, {4, 1, 5, 3, 1}}});
     ASSERT_EQ(body.cells.size(), 2u);
     apply(body, {.links = {}, .cells = {0}});
@@ -152,8 +152,8 @@ INSTANTIATE_TEST_SUITE_P(Every, Changes,
 
 TEST_P(Changes, KeepTheStateToTheBit) {
     for (const bool with_cells : {false, true})
-        for (const Body& body : {organ(), lattice({6, 5, 7}, 0.01f, tissue), without_grid(organ()),
-                                 stiff_sheet(), lattice({6, 5, 7}, 0.01f, solid)}) {
+        for (const Body& body : {organ(), lattice({6, 5, 7}, 0.01f, of_springs), without_grid(organ()),
+                                 stiff_sheet(), lattice({6, 5, 7}, 0.01f, of_tissue)}) {
             const Simulation how{.backend = GetParam(), .step = 2e-4, .force = true};
             auto swinging = make_solver(body, how, context());
             swinging->step(0.01);

@@ -49,7 +49,7 @@ TEST_P(CpuIs, TheReferenceOnOddSizes) {
                            {15, 2, 7}, {16, 3, 15}, {17, 7, 16}, {33, 17, 33}, {1, 1, 1},  {1, 1, 7}};
     for (const ivec3 d : sizes) {
         SCOPED_TRACE(std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z));
-        const Body box = lattice(d, 0.01f, tissue);
+        const Body box = lattice(d, 0.01f, of_springs);
         expect_same(box, everything(box), GetParam(), Backend::cpu, 10, 1e-5);
         const Body sheet = cloth({d.x, d.y}, 0.01f, linen);
         expect_same(sheet, everything(sheet), GetParam(), Backend::cpu, 10, 1e-5);
@@ -95,7 +95,7 @@ TEST_P(CpuIs, SavedAndRestoredToTheBit) {
 }
 
 TEST_P(CpuIs, AsItWasBeforeACallThatTearsIt) {
-    Body body = lattice({9, 5, 7}, 0.01f, tissue);
+    Body body = lattice({9, 5, 7}, 0.01f, of_springs);
     body.inverse_mass[3] = 0;
     const int held[] = {3};
     const vec3 to[] = {body.positions[3] + vec3(0, 0.01f, 0)};
@@ -136,7 +136,7 @@ TEST(Cpu, IsTheReferenceWithEveryInstructionSet) {
 
 // Bodies of every grid that has a kernel of its own.
 std::vector<Body> grids() {
-    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = tissue});
+    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = of_springs});
     std::vector<float> factors(organ.count());
     for (std::size_t i = 0; i < factors.size(); ++i) factors[i] = organ.positions[i].x > 0 ? 1.0f : 3.0f;
     Body hard = organ;
@@ -191,7 +191,7 @@ TEST(Cpu, ATurnedBodyMovesAsAnUnturnedOne) {
 
 // Found once and kept, or found again: the longest step is what stability says of what acts just now.
 TEST(Step, FollowsWhatActs) {
-    const Body body = lattice({6, 5, 7}, 0.01f, tissue);
+    const Body body = lattice({6, 5, 7}, 0.01f, of_springs);
     const double frequency = highest_frequency(body);
     const Press soft{.stiffness = 50}, hard{.stiffness = 5000};
     const NodePush drag{.stiffness = 200};
@@ -307,27 +307,27 @@ void expect_sound(const Body& body, int lanes) {
 }
 
 TEST(Layout, EveryLinkLeadsToItsNeighbour) {
-    const Body organ = lattice(ellipsoid({0.02f, 0.05f, 0.03f}, 12), {.nodes = 900, .material = tissue});
+    const Body organ = lattice(ellipsoid({0.02f, 0.05f, 0.03f}, 12), {.nodes = 900, .material = of_springs});
     const Mesh shell = both(ellipsoid({0.05f, 0.05f, 0.05f}, 16), [] {
         Mesh inner = ellipsoid({0.04f, 0.04f, 0.04f}, 16);
         for (uvec3& t : inner.triangles) std::swap(t.y, t.z);
         return inner;
     }());
-    const Body hollow = lattice(shell, {.nodes = 6000, .material = tissue});
+    const Body hollow = lattice(shell, {.nodes = 6000, .material = of_springs});
     for (int lanes : {1, 4, 8, 16}) {
         expect_sound(organ, lanes);
         expect_sound(hollow, lanes);
         for (ivec3 d : {ivec3(1, 1, 1), ivec3(33, 2, 5), ivec3(1, 17, 3), ivec3(7, 1, 1), ivec3(3, 4, 40)}) {
-            expect_sound(lattice(d, 0.01f, tissue), lanes);
+            expect_sound(lattice(d, 0.01f, of_springs), lanes);
             expect_sound(lattice(d, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.1f}), lanes);
         }
     }
 }
 
 TEST(Layout, ABoxHasNoGapsAndRowsAreTheLongest) {
-    EXPECT_EQ(Layout(lattice({27, 27, 27}, 0.01f, tissue), 8).slots, 27 * 27 * 27 + 5);
+    EXPECT_EQ(Layout(lattice({27, 27, 27}, 0.01f, of_springs), 8).slots, 27 * 27 * 27 + 5);
     // A rod along z, of rows that are 40 long there and 3 long along x.
-    Body rod = lattice(ellipsoid({0.012f, 0.012f, 0.2f}, 24), {.spacing = 0.01f, .material = tissue});
+    Body rod = lattice(ellipsoid({0.012f, 0.012f, 0.2f}, 24), {.spacing = 0.01f, .material = of_springs});
     const Layout layout(rod, 8);
     EXPECT_LE(layout.slots, 1.5 * double(rod.count()));
 }

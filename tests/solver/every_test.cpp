@@ -14,7 +14,11 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 2000, .density = 1000, .damping = 40, .link_damping = 1e-4f};
+const Material of_springs{.youngs_modulus = 2000,
+                          .density = 1000,
+                          .damping = 40,
+                          .link_damping = 1e-4f,
+                          .model = MaterialModel::springs};
 const ClothSettings linen{.density = 0.3f, .damping = 40, .link_damping = 1e-4f};
 
 // An open disc: a hub whose ring is closed, and a rim whose rings are open.
@@ -45,24 +49,24 @@ std::vector<std::pair<std::string, Body>> bodies() {
     net_body.damping = 40;
     ClothSettings stiff_linen = linen;
     stiff_linen.bending = 1e-3f;
-    Body nodule = lattice({4, 4, 4}, 0.01f, tissue);
+    Body nodule = lattice({4, 4, 4}, 0.01f, of_springs);
     std::vector<float> factors(nodule.count(), 1);
     for (int node : nodes_near(nodule, vec3(0.015f), 0.011f)) factors[std::size_t(node)] = 5;
     strengthen(nodule, factors);
-    Material solid = tissue;
-    solid.poisson = 0.45f;
+    Material of_tissue = of_springs;
+    of_tissue.model = MaterialModel::tissue;
     return {
-        {"lattice", lattice({4, 3, 5}, 0.01f, tissue)},
+        {"lattice", lattice({4, 3, 5}, 0.01f, of_springs)},
         {"lattice of a mesh",
-         lattice(ellipsoid({0.02f, 0.025f, 0.03f}, 12), {.nodes = 60, .material = tissue})},
+         lattice(ellipsoid({0.02f, 0.025f, 0.03f}, 12), {.nodes = 60, .material = of_springs})},
         {"lattice with a hard part", nodule},
-        {"solid", lattice({4, 5, 3}, 0.01f, solid)},
+        {"solid", lattice({4, 5, 3}, 0.01f, of_tissue)},
         {"volume of 2012", lattice({4, 4, 3}, 0.01f, SpringKinds{20, 10, 5}, {.mass = 0.05f, .damping = 40})},
         {"cloth", cloth({7, 8}, 0.01f, linen)},
         {"cloth of triangles", cloth(disc(), linen)},
         {"cloth of triangles that bends", cloth(disc(), stiff_linen)},
         {"net", net_body},
-        {"single node", lattice({1, 1, 1}, 0.01f, tissue)},
+        {"single node", lattice({1, 1, 1}, 0.01f, of_springs)},
         {"empty", net({}, {}, {})}};
 }
 
@@ -114,7 +118,7 @@ TEST_P(Everything, OddSizes) {
     for (std::size_t i = 0; i < std::size(sizes); ++i) {
         const auto& [name, collider] = shapes[i % shapes.size()];
         const ivec3 d = sizes[i];
-        run("lattice on " + name, lattice(d, 0.01f, tissue), GetParam(), collider);
+        run("lattice on " + name, lattice(d, 0.01f, of_springs), GetParam(), collider);
         run("cloth on " + name, cloth({d.x, d.y}, 0.01f, linen), GetParam(), collider);
         run("cloth on " + name, cloth({d.z, d.x}, 0.01f, linen), GetParam(), collider);
     }

@@ -24,7 +24,8 @@ Body moved(Body body, dvec3 by) {
 
 // Nothing damps them: what rounding does to them stays.
 std::vector<NamedBody> undamped_bodies() {
-    const Body cube = lattice({8, 6, 7}, 0.01f, Material{.youngs_modulus = 1e6, .density = 1000});
+    const Body cube = lattice(
+        {8, 6, 7}, 0.01f, Material{.youngs_modulus = 1e6, .density = 1000, .model = MaterialModel::springs});
     Body turned = cube;
     const mat3 turn = mat3(glm::rotate(mat4(1), 0.7f, glm::normalize(vec3(1, 2, 3))));
     for (vec3& p : turned.positions) p = turn * p;
@@ -141,7 +142,9 @@ TEST_P(Far, AChainAndASheetLieFarOut) {
     const mat3 turn = mat3(glm::rotate(mat4(1), 0.4f, glm::normalize(vec3(2, 1, -1))));
     for (const ivec3 dims : {ivec3(1, 1, 7), ivec3(1, 6, 1), ivec3(5, 1, 4)})
         for (const bool turned : {false, true}) {
-            Body body = lattice(dims, 0.01f, Material{.youngs_modulus = 1e5, .density = 1000});
+            Body body =
+                lattice(dims, 0.01f,
+                        Material{.youngs_modulus = 1e5, .density = 1000, .model = MaterialModel::springs});
             if (turned)
                 for (vec3& p : body.positions) p = turn * p;
             const Body there = moved(body, {1000, 20, -300});
@@ -154,7 +157,7 @@ TEST_P(Far, AChainAndASheetLieFarOut) {
 
 // Damping brakes a body that falls, whatever its speed is counted from: v = g/c (1 - e^(-c t)).
 TEST_P(Far, AirBrakesAFall) {
-    Body body = lattice({4, 3, 5}, 0.01f, tissue);
+    Body body = lattice({4, 3, 5}, 0.01f, of_springs);
     body.damping = 3;
     const auto falling = make(body, {.gravity = vec3(0, -10, 0)});
     const double speed = 10.0 / 3 * (1 - std::exp(-3.0)), way = 10.0 / 3 * (1 - (1 - std::exp(-3.0)) / 3);
@@ -182,7 +185,7 @@ TEST_P(Far, WhatIsHeldStays) {
 
 // In flight what was saved is put back as exactly as float takes it from another origin.
 TEST_P(Far, StatesAreSavedAndPutBackInFlight) {
-    const Body body = lattice({5, 4, 6}, 0.01f, tissue);
+    const Body body = lattice({5, 4, 6}, 0.01f, of_springs);
     const auto falling = make(body, {}), other = make(body, {});
     after_frames(*falling, 30);
     const State saved = falling->save();

@@ -82,7 +82,7 @@ TEST_P(EveryWay, IsTheReferenceOnOddSizes) {
     const std::vector<ivec3> sizes{{1, 33, 9}, {2, 15, 8}, {16, 3, 15}, {17, 7, 16}, {1, 1, 1}, {1, 1, 7}};
     for (const ivec3 d : share(sizes, 0)) {
         SCOPED_TRACE(std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z));
-        const Body box = lattice(d, 0.01f, tissue);
+        const Body box = lattice(d, 0.01f, of_springs);
         expect_same(box, {}, integrator(), backend(), 100, 1e-6, context());
         const Body sheet = cloth({d.x, d.y}, 0.01f, linen);
         expect_same(sheet, {}, integrator(), backend(), 100, 1e-6, context());
@@ -99,7 +99,7 @@ TEST_P(EveryWay, IsTheReferenceOnPolygonsAndFields) {
         {Polygon{{{a, b, c}, {a, c, vec3(-1, 0.1f, 1)}}}, 0.5f},
         {distance_field(block({-0.02f, -0.02f, -0.02f}, {0.0312f, 0.0053f, 0.0307f}), 0.003f), 0.5f},
         {distance_field(egg, 0.002f), 0.2f, 0.001f}};
-    for (const Body& body : {lattice({4, 3, 5}, 0.01f, tissue), cloth({7, 8}, 0.01f, linen)}) {
+    for (const Body& body : {lattice({4, 3, 5}, 0.01f, of_springs), cloth({7, 8}, 0.01f, linen)}) {
         Acting on;
         on.colliders = shapes;
         on.motions.assign(shapes.size(), Motion{.velocity = {0.01f, 0.02f, 0}, .spin = {0, 0, 0.5f}});
@@ -158,7 +158,7 @@ TEST_P(EveryWay, SavedAndRestoredToTheBit) {
 }
 
 TEST_P(EveryWay, UndoesACall) {
-    const Body body = lattice({5, 6, 7}, 0.01f, tissue);
+    const Body body = lattice({5, 6, 7}, 0.01f, of_springs);
     auto solver = make_solver(
         body, {.backend = backend(), .integrator = integrator(), .step = 1e-4, .force = true}, context());
     solver->step(3e-4);
@@ -179,7 +179,7 @@ TEST_P(EveryWay, UndoesACall) {
 // In a context where others draw too, whatever they have set: the motion is the same to the bit, and they
 // find all as they left it.
 TEST_P(EveryGpu, AGuestLeavesTheContextAsItFindsIt) {
-    const Body body = lattice({5, 6, 7}, 0.01f, tissue);
+    const Body body = lattice({5, 6, 7}, 0.01f, of_springs);
     const Acting on = everything(body);
     const Simulation how = simulation(body, on, Integrator::rk4, GetParam());  // which looks at most
     const auto move = [&](const auto& look) {
@@ -224,7 +224,7 @@ State wild(const Solver& solver) {
 }
 
 TEST_P(EveryGpu, IsAsItWasBeforeACallThatTearsIt) {
-    const Body body = lattice({9, 5, 7}, 0.01f, tissue);
+    const Body body = lattice({9, 5, 7}, 0.01f, of_springs);
     auto solver = make_solver(body, {.backend = GetParam(), .step = 1e-4, .force = true}, context());
     solver->step(3e-4);
     solver->restore(wild(*solver));
@@ -237,7 +237,7 @@ TEST_P(EveryGpu, IsAsItWasBeforeACallThatTearsIt) {
 
 // It may be given what is torn already: that is found by the next call, which leaves it so.
 TEST_P(EveryGpu, TakesAStateThatIsTorn) {
-    const Body body = lattice({9, 5, 7}, 0.01f, tissue);
+    const Body body = lattice({9, 5, 7}, 0.01f, of_springs);
     auto solver = make_solver(body, {.backend = GetParam(), .step = 1e-4, .force = true}, context());
     State torn = solver->save();
     torn.positions[100] += dvec3(5, 0, 0);
@@ -250,7 +250,7 @@ TEST_P(EveryGpu, TakesAStateThatIsTorn) {
 }
 
 TEST_P(EveryGpu, ReadsNothingBackToStep) {
-    const Body body = lattice({6, 5, 4}, 0.01f, tissue);
+    const Body body = lattice({6, 5, 4}, 0.01f, of_springs);
     const Acting on = everything(body);
     auto solver = make_solver(body, simulation(body, on, Integrator::rk4, GetParam()), context());
     const long before = context()->reads();
@@ -309,15 +309,15 @@ TEST_P(EveryGpu, TakesABodyOfNoNodes) {
 TEST_P(EveryGpu, KeepsNoBoxThatIsMostlyEmpty) {
     Mesh rod = ellipsoid({0.012f, 0.012f, 0.3f}, 24);
     rotate(rod, {40, 30, 0});
-    const Body body = lattice(rod, {.spacing = 0.01f, .material = tissue});
+    const Body body = lattice(rod, {.spacing = 0.01f, .material = of_springs});
     auto solver = make_solver(body, {.backend = GetParam()}, context());
     EXPECT_LE(double(solver->memory()), 700.0 * double(body.count()));
     expect_same(body, everything(body), Integrator::verlet, GetParam(), 20, 1e-6, context());
 }
 
 TEST_P(EveryGpu, GoesInAContextOfItsOwnToo) {
-    auto solver = make_solver(lattice({3, 3, 3}, 0.01f, tissue), {.backend = GetParam()});
-    auto another = make_solver(lattice({4, 3, 3}, 0.01f, tissue), {.backend = GetParam()});
+    auto solver = make_solver(lattice({3, 3, 3}, 0.01f, of_springs), {.backend = GetParam()});
+    auto another = make_solver(lattice({4, 3, 3}, 0.01f, of_springs), {.backend = GetParam()});
     for (int call = 0; call < 3; ++call) {
         EXPECT_FALSE(solver->step(0.01).diverged);
         EXPECT_FALSE(another->step(0.01).diverged);

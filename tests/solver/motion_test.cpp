@@ -18,8 +18,9 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 5000, .density = 1000, .damping = 3};
-const Material undamped{.youngs_modulus = 5000, .density = 1000};
+const Material of_springs{
+    .youngs_modulus = 5000, .density = 1000, .damping = 3, .model = MaterialModel::springs};
+const Material undamped{.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs};
 
 class Motion : public ::testing::TestWithParam<Integrator> {
  protected:
@@ -94,7 +95,9 @@ TEST_P(Motion, FreeFall) {
 }
 
 TEST_P(Motion, TerminalSpeedUnderDamping) {
-    const Body body = lattice({3, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .damping = 20});
+    const Body body =
+        lattice({3, 3, 3}, 0.01f,
+                {.youngs_modulus = 5000, .density = 1000, .damping = 20, .model = MaterialModel::springs});
     auto solver = make_solver(body, simulation());
     for (int i = 0; i < 120; ++i) solver->step(1.0 / 60);
     for (dvec3 v : solver->state().velocities) EXPECT_LE(std::abs(v.y + 9.81 / 20), 1e-4);
@@ -118,7 +121,7 @@ TEST_P(Motion, MomentumStaysWithoutAnOuterForce) {
 
 TEST_P(Motion, RestStaysAtRest) {
     const Mesh mesh = ellipsoid({0.05f, 0.04f, 0.06f}, 30);
-    const Body body = lattice(mesh, {.nodes = 800, .material = tissue});
+    const Body body = lattice(mesh, {.nodes = 800, .material = of_springs});
     auto solver = make_solver(body, weightless());
     const double step = solver->longest_step({});
     for (int i = 0; i < 100; ++i) solver->step(100 * step);  // 10,000 steps
@@ -134,7 +137,7 @@ TEST_P(Motion, RestStaysAtRest) {
 }
 
 TEST_P(Motion, APinnedNodeNeverMoves) {
-    Body body = lattice({4, 4, 4}, 0.01f, tissue);
+    Body body = lattice({4, 4, 4}, 0.01f, of_springs);
     const std::vector<int> held = {0, 5, 17, 63};
     pin(body, held);
     Simulation s = simulation();
@@ -149,7 +152,7 @@ TEST_P(Motion, APinnedNodeNeverMoves) {
 }
 
 TEST_P(Motion, PlaneAndSphereHoldTheBody) {
-    const Body body = lattice({5, 5, 5}, 0.01f, tissue);
+    const Body body = lattice({5, 5, 5}, 0.01f, of_springs);
     Simulation s = simulation();
     const vec3 centre(0.02f, -0.06f, 0.02f);
     s.colliders = {Collider{Plane{{0, 1, 0}, -0.05f}}, Collider{Sphere{centre, 0.05f}}};
@@ -166,7 +169,9 @@ TEST_P(Motion, PlaneAndSphereHoldTheBody) {
 TEST_P(Motion, OnAPlaneAtRestTheGroundCarriesTheWeight) {
     // Frictionless, so only the height is held: the lowest layer stays on the plane and nothing moves any
     // more.
-    const Body body = lattice({4, 4, 4}, 0.01f, {.youngs_modulus = 20000, .density = 1000, .damping = 20});
+    const Body body =
+        lattice({4, 4, 4}, 0.01f,
+                {.youngs_modulus = 20000, .density = 1000, .damping = 20, .model = MaterialModel::springs});
     Simulation s = simulation();
     s.colliders = {Collider{Plane{{0, 1, 0}, 0}}};
     auto solver = make_solver(body, s);
@@ -206,7 +211,9 @@ TEST_P(Motion, TheReactionOfAPressIsTheMomentumItGives) {
 
 TEST_P(Motion, ATipPressesAsHardAsItsStiffnessSays) {
     // A tip much wider than the block lies flat on its top, whose whole area it meets at nearly one depth.
-    Body body = lattice({9, 3, 9}, 0.01f, {.youngs_modulus = 1e5f, .density = 1000, .damping = 50});
+    Body body =
+        lattice({9, 3, 9}, 0.01f,
+                {.youngs_modulus = 1e5f, .density = 1000, .damping = 50, .model = MaterialModel::springs});
     const float radius = 5, depth = 1e-3f;
     const Press press{{0.04f, 0.02f + radius - depth, 0.04f}, vec3(0), radius, 1e7f};
     const double pressure = 1e7 / (3.14159265 * 25);  // Pa/m
@@ -231,8 +238,9 @@ TEST_P(Motion, ATipPressesAsHardAsItsStiffnessSays) {
 TEST_P(Motion, WhatATipFeelsDoesNotDependOnTheLattice) {
     auto held_force = [&](int cells) {
         const float h = 0.06f / float(cells);
-        Body body = lattice({cells + 1, cells / 2 + 1, cells + 1}, h,
-                            {.youngs_modulus = 8000, .density = 1000, .damping = 30});
+        Body body = lattice(
+            {cells + 1, cells / 2 + 1, cells + 1}, h,
+            {.youngs_modulus = 8000, .density = 1000, .damping = 30, .model = MaterialModel::springs});
         pin(body, nodes_below(body, 0, {0, -1, 0}));
         auto solver = make_solver(body, weightless());
         const Press press{{0.03f, 0.03f + 0.02f - 0.006f, 0.03f}, vec3(0), 0.02f, 400};
@@ -246,7 +254,7 @@ TEST_P(Motion, WhatATipFeelsDoesNotDependOnTheLattice) {
 }
 
 TEST_P(Motion, TheSameRunTwiceGivesTheSameBits) {
-    const Body body = lattice(ellipsoid({0.05f, 0.04f, 0.06f}, 30), {.nodes = 900, .material = tissue});
+    const Body body = lattice(ellipsoid({0.05f, 0.04f, 0.06f}, 30), {.nodes = 900, .material = of_springs});
     auto end = [&] {
         auto solver = make_solver(body, simulation());
         const Press press{{0, 0, 0.065f}, {0, 0, -0.01f}, 0.015f, 300};
@@ -272,11 +280,11 @@ TEST(Stability, HighestFrequencyInClosedForm) {
     const double inside = std::sqrt(12 * 0.4 * 5000 * 0.01 / (1000 * 1e-6));
     EXPECT_GE(highest_frequency(solid) / inside, 0.95);
     EXPECT_LE(highest_frequency(solid) / inside, 1.3);
-    EXPECT_EQ(highest_frequency(lattice({1, 1, 1}, 1, tissue)), 0);
+    EXPECT_EQ(highest_frequency(lattice({1, 1, 1}, 1, of_springs)), 0);
 }
 
 TEST_P(Motion, AStepAboveTheBoundIsRefusedByName) {
-    const Body body = lattice({6, 6, 6}, 0.01f, tissue);
+    const Body body = lattice({6, 6, 6}, 0.01f, of_springs);
     const double bound = longest_step(GetParam(), highest_frequency(body), body.damping);
     Simulation s = simulation((GetParam() == Integrator::rk4 ? 2 : 1.2) * bound);
     const std::string said = refusal([&] { make_solver(body, s); });
@@ -298,12 +306,13 @@ TEST_P(Motion, AStepAboveTheBoundIsRefusedByName) {
 }
 
 TEST(Stability, TooManyStepsAFrameNameTheRemedy) {
-    const Body body = lattice({4, 4, 4}, 0.001f, {.youngs_modulus = 1e9f, .density = 1000});
+    const Body body = lattice({4, 4, 4}, 0.001f,
+                              {.youngs_modulus = 1e9f, .density = 1000, .model = MaterialModel::springs});
     for (const char* word : {"verlet", "softer"}) expect_refused(word, [&] { make_solver(body, {}); });
 }
 
 TEST(Stability, TooManyCollidersAreRefused) {
-    const Body body = lattice({2, 2, 2}, 0.01f, tissue);
+    const Body body = lattice({2, 2, 2}, 0.01f, of_springs);
     Simulation s;
     s.colliders.assign(17, Collider{Plane{}});
     EXPECT_THROW(make_solver(body, s), Error);

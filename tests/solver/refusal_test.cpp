@@ -19,7 +19,8 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 2000, .density = 1000, .damping = 40};
+const Material of_springs{
+    .youngs_modulus = 2000, .density = 1000, .damping = 40, .model = MaterialModel::springs};
 constexpr float none = std::numeric_limits<float>::quiet_NaN(),
                 endless = std::numeric_limits<float>::infinity();
 
@@ -27,7 +28,7 @@ class Refuses : public EveryBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, Refuses, every_backend(), backend_name);
 
 TEST_P(Refuses, WhatCannotActOnABodyOrBePutBack) {
-    Body body = lattice({4, 3, 5}, 0.01f, tissue);
+    Body body = lattice({4, 3, 5}, 0.01f, of_springs);
     body.inverse_mass[0] = 0;
     const int last = int(body.count()) - 1;
     auto solver = make(body, {.colliders = {{Sphere{vec3(5)}}}});
@@ -82,7 +83,7 @@ TEST_P(Refuses, WhatCannotActOnABodyOrBePutBack) {
 }
 
 TEST(Refusal, OfBodiesThatDoNotHold) {
-    const Body sound = lattice({4, 3, 5}, 0.01f, tissue), sheet = cloth({5, 4}, 0.01f, {.density = 1});
+    const Body sound = lattice({4, 3, 5}, 0.01f, of_springs), sheet = cloth({5, 4}, 0.01f, {.density = 1});
     const Body written = without_grid(sound);
     auto listed = [](Body& b) -> std::vector<Spring>& { return std::get<ListedSprings>(b.terms[0]).springs; };
     const auto refused = [&](const std::string& word, Body body, auto spoil) {
@@ -145,7 +146,7 @@ TEST(Refusal, OfBodiesThatDoNotHold) {
 }
 
 TEST(Refusal, OfSimulationsThatCannotBe) {
-    const Body body = lattice({4, 3, 5}, 0.01f, tissue);
+    const Body body = lattice({4, 3, 5}, 0.01f, of_springs);
     const auto refused = [&](const std::string& word, const Simulation& simulation) {
         expect_refused(word, [&] { make_solver(body, simulation); });
     };

@@ -69,7 +69,8 @@ TEST(ShortSteps, OneLightNode) {
 }
 
 TEST(ShortSteps, AHardPart) {
-    Body body = lattice({8, 8, 8}, 0.01f, Material{.youngs_modulus = 2000, .density = 1000});
+    Body body = lattice({8, 8, 8}, 0.01f,
+                        Material{.youngs_modulus = 2000, .density = 1000, .model = MaterialModel::springs});
     std::vector<float> factors(body.count(), 1);
     for (int node : nodes_near(body, vec3(0.035f), 0.012f)) factors[std::size_t(node)] = 1e6f;
     strengthen(body, factors);
@@ -95,18 +96,24 @@ TEST(ShortSteps, Tissue) {
 }
 
 TEST(ShortSteps, TheMaterialItselfWhereNothingElseIs) {
-    const Body steel = lattice({4, 4, 4}, 0.001f, Material{.youngs_modulus = 2e11f, .density = 7800});
+    const Body steel =
+        lattice({4, 4, 4}, 0.001f,
+                Material{.youngs_modulus = 2e11f, .density = 7800, .model = MaterialModel::springs});
     expect_only(refusal(steel), material);
     // Little of damping beside it is not to blame.
     expect_only(
-        refusal(lattice({4, 4, 4}, 0.001f, Material{.youngs_modulus = 2e11f, .density = 7800, .damping = 1})),
+        refusal(lattice(
+            {4, 4, 4}, 0.001f,
+            Material{
+                .youngs_modulus = 2e11f, .density = 7800, .damping = 1, .model = MaterialModel::springs})),
         material);
 }
 
 TEST(ShortSteps, ExplicitEulerWithoutDampingIsToldVerlet) {
     Simulation simulation;
     simulation.integrator = Integrator::explicit_euler;
-    const Body body = lattice({4, 4, 4}, 0.01f, Material{.youngs_modulus = 1e5f, .density = 1000});
+    const Body body = lattice(
+        {4, 4, 4}, 0.01f, Material{.youngs_modulus = 1e5f, .density = 1000, .model = MaterialModel::springs});
     expect_only(refusal(body, simulation), "choose verlet");
     EXPECT_EQ(refusal(body, simulation).find("damping, or"), std::string::npos);
 }
@@ -114,8 +121,9 @@ TEST(ShortSteps, ExplicitEulerWithoutDampingIsToldVerlet) {
 TEST(ShortSteps, TheIntegratorAndTheStepThatWasAskedFor) {
     Simulation simulation;
     simulation.integrator = Integrator::explicit_euler;
-    const Body body =
-        lattice({4, 4, 4}, 0.01f, Material{.youngs_modulus = 1e5f, .density = 1000, .damping = 0.5f});
+    const Body body = lattice(
+        {4, 4, 4}, 0.01f,
+        Material{.youngs_modulus = 1e5f, .density = 1000, .damping = 0.5f, .model = MaterialModel::springs});
     expect_only(refusal(body, simulation), "choose verlet");
     simulation.integrator = Integrator::verlet;
     EXPECT_EQ(refusal(body, simulation), "");

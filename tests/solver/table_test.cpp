@@ -119,7 +119,7 @@ Body torn_sheet(Body body, unsigned seed) {
 }
 
 std::vector<NamedBody> tables() {
-    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 400, .material = tissue});
+    const Body organ = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 400, .material = of_springs});
     Mesh bowl = ellipsoid({0.04f, 0.04f, 0.02f}, 7);
     Mesh open = bowl;
     open.triangles.resize(open.triangles.size() * 2 / 3);
@@ -144,7 +144,7 @@ std::vector<NamedBody> tables() {
             {"a torn sheet of hinges", hinged(torn_sheet(sheet({19, 23}, 4), 4))},
             {"a parasol of hinges", hinged(parasol(90))},
             {"an organ", without_grid(organ)},
-            {"a box", without_grid(lattice({9, 7, 8}, 0.01f, tissue))}};
+            {"a box", without_grid(lattice({9, 7, 8}, 0.01f, of_springs))}};
 }
 
 class TableIs : public ::testing::TestWithParam<Integrator> {};
@@ -243,7 +243,7 @@ TEST(Tables, AreTheReferenceWithEveryInstructionSet) {
 // Shares are worked into stiffness and tension: exact for none, a quarter, a half and all of a spring, and
 // with three quarters off by no more than a float's rounding is anyway.
 TEST(Tables, LoseNothingByTheirShares) {
-    const Body grid = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = tissue});
+    const Body grid = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 700, .material = of_springs});
     const Body body = without_grid(grid);
     EXPECT_TRUE(std::ranges::any_of(table(grid).ties, [](const Tie& tie) { return tie.share == 0.75f; }));
     const Simulation how = simulation(body, {}, Integrator::verlet, Backend::cpu);

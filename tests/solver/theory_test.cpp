@@ -79,9 +79,11 @@ TEST(Theory, WithoutDampingSomeGrowAsPredicted) {
         const Growth g = growth_per_step(integrator, 0.5);
         EXPECT_GT(g.predicted, 0.005);
         EXPECT_LE(std::abs(g.measured / g.predicted - 1), 0.01) << name_of(integrator);
-        EXPECT_THROW(make_solver(lattice({3, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000}),
-                                 {.integrator = integrator}),
-                     Error);
+        EXPECT_THROW(
+            make_solver(lattice({3, 3, 3}, 0.01f,
+                                {.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs}),
+                        {.integrator = integrator}),
+            Error);
     }
 }
 
@@ -178,7 +180,9 @@ TEST(Kinds, TheVolumeOf2012Has32Springs) {
 // Two halves in a row, one four times as stiff: their compliances add up.
 TEST(Region, AHardHalfStretchesLess) {
     const float h = 0.01f;
-    Body body = lattice({33, 5, 5}, h, {.youngs_modulus = 5000, .density = 1000, .damping = 30});
+    Body body =
+        lattice({33, 5, 5}, h,
+                {.youngs_modulus = 5000, .density = 1000, .damping = 30, .model = MaterialModel::springs});
     std::vector<float> factors(body.count(), 1);
     for (int node : nodes_in(body, {vec3(-1), vec3(0.155f, 1, 1)})) factors[std::size_t(node)] = 4;
     strengthen(body, factors);
@@ -256,7 +260,9 @@ TEST(Cloth, RefusesWhatIsNoSheet) {
 
 TEST(State, SavedAndRestoredExactly) {
     for (const auto& [integrator, name] : names(Integrator{})) {
-        Body body = lattice({4, 5, 3}, 0.01f, {.youngs_modulus = 2000, .density = 1000, .damping = 60});
+        Body body = lattice(
+            {4, 5, 3}, 0.01f,
+            {.youngs_modulus = 2000, .density = 1000, .damping = 60, .model = MaterialModel::springs});
         pin(body, std::vector<int>{0, 1});
         const Simulation simulation{.integrator = integrator, .shortest_step = 1e-6};
         auto solver = make_solver(body, simulation);
@@ -282,7 +288,8 @@ TEST(State, SavedAndRestoredExactly) {
 
 // A change of the integrator in mid flight keeps the motion: state() of one is a start for another.
 TEST(State, CarriesOverToAnotherIntegrator) {
-    const Body body = lattice({4, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
+    const Body body =
+        lattice({4, 3, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs});
     auto verlet = make_exact_solver(body, {.step = 1e-5}, 0);
     State thrown = verlet->state();
     for (std::size_t i = 0; i < thrown.velocities.size(); ++i)
@@ -316,7 +323,8 @@ TEST(State, VerletsOwnStateStartsAnyOther) {
 }
 
 TEST(Solver, RefusesWhatIsNotFinite) {
-    Body body = lattice({2, 2, 2}, 0.01f, {.youngs_modulus = 5000, .density = 1000});
+    Body body =
+        lattice({2, 2, 2}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs});
     body.inverse_mass[3] = std::numeric_limits<float>::infinity();
     EXPECT_THROW(make_solver(body, {}), Error);
     const Mesh flat{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {}, {{0, 1, 2}}};

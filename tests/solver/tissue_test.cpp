@@ -43,7 +43,7 @@ double largest(const Places& vectors) {
 
 // An organ with cells of many weights.
 Body ragged(float poisson, unsigned seed) {
-    Material material = solid;
+    Material material = of_tissue;
     material.poisson = poisson;
     Body body = lattice(ellipsoid({0.02f, 0.03f, 0.025f}, 9), {.nodes = 90, .material = material});
     std::mt19937 random(seed);
@@ -165,7 +165,7 @@ TEST(Tissue, StiffnessIsSymmetricNeverNegativeAndLetsABodyTurn) {
 TEST(Tissue, BarsHaveTheirModulusAndPoissonsRatio) {
     for (int thick : {1, 2, 4, 8})
         for (float poisson : {0.25f, 0.35f, 0.45f, 0.49f}) {
-            Material material = solid;
+            Material material = of_tissue;
             material.poisson = poisson;
             const float h = 1.0f / 256;  // so that cells are cubes to the bit
             const Body body = lattice({13, thick + 1, thick + 1}, h, material);
@@ -219,7 +219,7 @@ Places displacement_under(const Body& body, const Places& force) {
 TEST(Tissue, CantileversSagAsBeamsDo) {
     for (int thick : {1, 2, 3, 4})
         for (float poisson : {0.3f, 0.45f}) {
-            Material material = solid;
+            Material material = of_tissue;
             material.poisson = poisson;
             const float h = 1.0f / 256;
             const int cells = 12 * thick;
@@ -246,7 +246,7 @@ TEST(Tissue, CantileversSagAsBeamsDo) {
 
 TEST(Tissue, TheStepBoundIsBelowTheClosedFormForAnyFilling) {
     for (float poisson : {0.25f, 0.45f, 0.49f}) {
-        Material material = solid;
+        Material material = of_tissue;
         material.poisson = poisson;
         const float h = 0.01f;
         for (const Body& body :
@@ -268,7 +268,7 @@ TEST(Tissue, TheStepBoundIsBelowTheClosedFormForAnyFilling) {
 TEST(Tissue, FillsTheVolumeOfItsMesh) {
     for (int nodes : {100, 1000, 5000}) {
         const Mesh mesh = ellipsoid({0.05f, 0.03f, 0.04f}, 24);
-        const Body body = lattice(mesh, {.nodes = nodes, .material = solid});
+        const Body body = lattice(mesh, {.nodes = nodes, .material = of_tissue});
         double filled = 0;
         for (float part : tissue_of(body)->filled) filled += double(part);
         EXPECT_LE(std::abs(filled * std::pow(double(body.spacing), 3) / double(volume(mesh)) - 1), 0.02)
@@ -277,7 +277,7 @@ TEST(Tissue, FillsTheVolumeOfItsMesh) {
 }
 
 TEST(Tissue, WeighsWhatIsLeftWhereCellsAreCut) {
-    Body body = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 300, .material = solid});
+    Body body = lattice(ellipsoid({0.05f, 0.03f, 0.04f}, 12), {.nodes = 300, .material = of_tissue});
     auto mass_of_filling = [](const Body& of) {
         double sum = 0;
         for (float part : tissue_of(of)->filled) sum += double(part);
@@ -292,7 +292,7 @@ TEST(Tissue, WeighsWhatIsLeftWhereCellsAreCut) {
 }
 
 TEST(Tissue, MayBeFarOut) {
-    Body body = lattice({4, 4, 4}, 0.005f, solid);
+    Body body = lattice({4, 4, 4}, 0.005f, of_tissue);
     for (vec3& p : body.positions) p += vec3(300, -100, 50);
     EXPECT_NO_THROW(check(body));
     auto solver = make_solver(body, {.gravity = vec3(0)});
@@ -304,7 +304,7 @@ TEST(Tissue, MayBeFarOut) {
 
 // A block that is held at its lowest layer.
 Body held_block(ivec3 dims, float spacing, float poisson) {
-    Material material = solid;
+    Material material = of_tissue;
     material.poisson = poisson;
     Body body = lattice(dims, spacing, material);
     for (std::size_t i = 0; i < body.count(); ++i)
@@ -405,7 +405,7 @@ TEST(Tissue, KeepsItsVolumeUnderAPress) {
 TEST(Tissue, HoldsATipThatIsDeep) {
     std::vector<double> forces;
     for (int fine : {1, 2}) {
-        const Body body = held_block(ivec3(10 * fine + 1), 0.01f / float(fine), solid.poisson);
+        const Body body = held_block(ivec3(10 * fine + 1), 0.01f / float(fine), of_tissue.poisson);
         const auto solver = make_solver(body, {.gravity = vec3(0)});
         Press tip{{0.05f, 0.13f, 0.05f}, {0, -0.08f, 0}, 0.03f, 3000};
         Stats stats;

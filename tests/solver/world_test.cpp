@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 Body pinned_box() {
-    Body body = lattice({6, 5, 4}, 0.01f, tissue);
+    Body body = lattice({6, 5, 4}, 0.01f, of_springs);
     for (std::size_t i = 0; i < body.count(); i += 6) body.inverse_mass[i] = 0;
     return body;
 }
@@ -118,7 +118,7 @@ TEST(World, ASolverThatGoesOnRemembersWhereItBegan) {
 TEST(World, RefusesBeforeAnythingMoves) {
     World world(on_cpu);
     world.add(pinned_box());
-    world.add(lattice({2, 2, 2}, 0.01f, tissue));
+    world.add(lattice({2, 2, 2}, 0.01f, of_springs));
     const std::vector<State> before = world.save();
     const BodyPush no_body{2, {}}, no_node{1, {.node = 8}};
     EXPECT_NE(refusal([&] {
