@@ -30,6 +30,7 @@
 #include "palpate/body/lattice.h"
 #include "palpate/body/material.h"
 #include "palpate/body/nodes.h"
+#include "palpate/body/own_weight.h"
 #include "palpate/body/patch.h"
 #include "palpate/body/scatter.h"
 #include "palpate/body/select.h"

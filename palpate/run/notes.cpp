@@ -1,5 +1,6 @@
 #include "palpate/run/notes.h"
 
+#include "palpate/body/own_weight.h"
 #include "palpate/run/bounding_box.h"
 #include "palpate/run/run.h"
 
@@ -195,26 +196,37 @@ std::string how_to_ask_less(const Scene& scene, const Report& report) {
 
 namespace {
 
-// What a solid's own weight does to it, as a part of its height: density x gravity x height / (2 x modulus).
-float sag(const Scene& scene, const Material& material, const Body& body) {
-    const vec3 gravity = scene.simulation.gravity;
-    const float strength = glm::length(gravity),
-                volume = float(body.cells.size()) * std::pow(body.spacing, 3.0f);
-    if (!(material.youngs_modulus > 0 && strength > 0 && volume > 0)) return 0;
-    float low = infinite, high = -infinite;
-    for (vec3 p : body.positions) {
-        const float along = glm::dot(p, gravity) / strength;
-        low = std::min(low, along), high = std::max(high, along);
-    }
-    const float density = float(mass(body)) / volume;
-    return density * strength * (high - low) / (2 * material.youngs_modulus);
+// Young's modulus of a solid, Pa; 0 of what else there is.
+double modulus(const Scene& scene, const Models& made, std::size_t body) {
+    if (const TissueCells* cells = tissue_of(made.models[body].body)) return cells->youngs_modulus;
+    return body < scene.bodies.size() ? scene.bodies[body].material.youngs_modulus : 0;
+}
+
+std::vector<int> held_nodes(const Body& body) {
+    std::vector<int> held;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (!(body.inverse_mass[i] > 0)) held.push_back(int(i));
+    return held;
+}
+
+// A body whose own weight is too much for it.
+void look_at_weight(const Scene& scene, const Models& made, std::size_t m, std::vector<std::string>& notes) {
+    constexpr double much = 0.3, little = 0.1;  // strains
+    const Body& body = made.models[m].body;
+    const double stiffness = modulus(scene, made, m),
+                 stress = own_weight_stress(body, held_nodes(body), scene.simulation.gravity);
+    if (stiffness > 0 && stress > much * stiffness)
+        notes.push_back(
+            fmt::format("body {}: its own weight strains it by {:.0f} %, so it sags, and falls over if it is "
+                        "slender; give it "
+                        "youngs_modulus = {:.2g} Pa for {:.0f} %, hold more of it, or turn gravity off",
+                        body.name, 100 * stress / stiffness, stress / little, 100 * little));
 }
 
 }  // namespace
 
 std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
     constexpr float widest_gap = 0.7f;  // of the spacing: half the diagonal of a square of nodes
-    constexpr float much_sag = 0.15f;   // of the height
     std::vector<std::string> notes = made.notes;
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const Body& body = made.models[m].body;
@@ -223,13 +235,7 @@ std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
                 fmt::format("body {}: nothing holds it, so it falls; give it a pin, or the scene a collider, "
                             "or no gravity",
                             body.name));
-        const Material material = m < scene.bodies.size() ? scene.bodies[m].material : Material{};
-        if (const float part = sag(scene, material, body); part > much_sag)
-            notes.push_back(
-                fmt::format("body {}: its own weight deforms it by about {:.0f} % of its height; for a tenth "
-                            "of that height "
-                            "give it youngs_modulus = {:.2g} Pa, or turn gravity off",
-                            body.name, 100 * part, material.youngs_modulus * part / 0.1f));
+        look_at_weight(scene, made, m, notes);
         for (const ToolRecipe& tool : scene.tools)
             if (tool.kind == ToolKind::press && tool.radius < widest_gap * body.spacing)
                 notes.push_back(

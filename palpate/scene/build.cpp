@@ -5,6 +5,7 @@
 #include "palpate/body/hull.h"
 #include "palpate/body/influences.h"
 #include "palpate/body/lattice.h"
+#include "palpate/body/own_weight.h"
 #include "palpate/body/select.h"
 #include "palpate/files/extension.h"
 #include "palpate/files/image_file.h"
@@ -116,10 +117,34 @@ void strengthen_regions(Body& body, const BodyRecipe& recipe, const Scene& scene
     if (!recipe.regions.empty()) strengthen(body, factors);
 }
 
+// What its lattice is made of, until it is known what holds it.
+Material first_material(const BodyRecipe& recipe) {
+    Material material = recipe.material;
+    if (recipe.bears_its_weight()) material.youngs_modulus = 1e4f;
+    return material;
+}
+
+// The modulus at which its own weight on Earth strains a body by three hundredths, to two digits.
+void stiffen_to_bear(Body& body, const std::string& name, std::span<const int> held, vec3 down,
+                     std::vector<std::string>& notes) {
+    constexpr double strain = 0.03, earth = 9.81;
+    const double stress = own_weight_stress(body, held, float(earth) * down);
+    for (Term& term : body.terms)
+        if (auto* cells = std::get_if<TissueCells>(&term); cells && stress > 0) {
+            const double unit = std::pow(10.0, std::floor(std::log10(stress / strain)) - 1);
+            cells->youngs_modulus = float(std::round(stress / strain / unit) * unit);
+            notes.push_back(
+                fmt::format("body {}: it is given a youngs_modulus of {:g} kPa, so that it bears its "
+                            "own weight; say another",
+                            name, cells->youngs_modulus / 1000));
+        }
+}
+
 void hold(Body& body, const BodyRecipe& recipe, const Scene& scene, std::vector<std::string>& notes) {
-    strengthen_regions(body, recipe, scene, notes);
     const std::vector<int> held =
         chosen(body, recipe.pin, scene, recipe.lines, "body " + recipe.name, "pin.", notes);
+    if (recipe.bears_its_weight()) stiffen_to_bear(body, recipe.name, held, down(scene), notes);
+    strengthen_regions(body, recipe, scene, notes);
     if (held.size() == body.count())
         notes.push_back(fmt::format("body {}: pin holds all its {} nodes, so it will not move; pin fewer",
                                     recipe.name, held.size()));
@@ -201,7 +226,7 @@ Body cage_around(const Mesh& surface, const BodyRecipe& recipe) {
     const vec3 cells(dims - 1), fitting = box.size() / glm::max(cells, vec3(1));
     const float widest = std::max({fitting.x, fitting.y, dims.z > 1 ? fitting.z : 0});
     const float spacing = recipe.spacing > 0 ? recipe.spacing : widest;
-    Body body = dims.z > 1 ? lattice(dims, spacing, recipe.material)
+    Body body = dims.z > 1 ? lattice(dims, spacing, first_material(recipe))
                            : cloth({dims.x, dims.y}, spacing, cloth_settings(recipe));
     for (vec3& p : body.positions) p += box.centre() - 0.5f * spacing * cells;
     return body;
@@ -213,8 +238,9 @@ Body make_body(const BodyRecipe& recipe, const Mesh& surface, const Progress& pr
     if (recipe.sheet) return cloth(surface, cloth_settings(recipe));
     if (recipe.dims && recipe.springs)
         return lattice(*recipe.dims, recipe.spacing, *recipe.springs, recipe.material);
-    if (recipe.dims) return lattice(*recipe.dims, recipe.spacing, recipe.material);
-    return lattice(surface, {.nodes = recipe.nodes, .spacing = recipe.spacing, .material = recipe.material},
+    const Material material = first_material(recipe);
+    if (recipe.dims) return lattice(*recipe.dims, recipe.spacing, material);
+    return lattice(surface, {.nodes = recipe.nodes, .spacing = recipe.spacing, .material = material},
                    progress);
 }
 
@@ -295,9 +321,9 @@ BodyRecipe without_body(BodyRecipe recipe) {
 }
 
 bool looks_down(const BodyRecipe& recipe) {
-    return recipe.pin.below || std::ranges::any_of(recipe.regions, [](const Region& region) {
-               return region.choice.below.has_value();
-           });
+    return recipe.pin.below || recipe.bears_its_weight() ||
+           std::ranges::any_of(recipe.regions,
+                               [](const Region& region) { return region.choice.below.has_value(); });
 }
 
 // The models of a scene before it was changed.
@@ -356,7 +382,8 @@ std::optional<Model> restuffed(const BodyRecipe& recipe, const Scene& scene, con
     if (!number) return std::nullopt;
     const BodyRecipe& before = earlier->scene.bodies[*number];
     Model model = earlier->made.models[*number];
-    if (!restuff(model.body, before.material, recipe.material, volume(model.surface))) return std::nullopt;
+    if (!restuff(model.body, first_material(before), first_material(recipe), volume(model.surface)))
+        return std::nullopt;
     if (recipe.mapping != before.mapping) model.embedding = embed(model.surface, model.body, recipe.mapping);
     hold(model.body, recipe, scene, notes);
     return model;

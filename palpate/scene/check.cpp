@@ -63,7 +63,7 @@ void check(const Region& region, const BodyRecipe& body, const SceneSource& sour
     require.one_of({"youngs_modulus", "stiffness", "factor"}, "give it one");
     require("", region.factor > 0 || (!body.springs && !body.is_cloth()),
             "springs of several kinds have neither one modulus nor one stiffness", "give it a factor");
-    require("stiffness", region.stiffness == 0 || !is_tissue(body.material),
+    require("stiffness", region.stiffness == 0 || !(is_tissue(body.material) || body.bears_its_weight()),
             "a stiffness in a body of tissue", "give it youngs_modulus or a factor");
 }
 
@@ -94,13 +94,13 @@ void check_springs(const BodyRecipe& body, const Require& require) {
         require("springs", body.is_cloth() || body.dims, "springs are for cloth, sheets and dims",
                 "give youngs_modulus or stiffness");
         require("links", !require.has("links"), "links has no effect here", "remove it");
-    } else {
+    } else if (!body.bears_its_weight() || body.material.model == MaterialModel::springs ||
+               require.has("links")) {
         require.one_of({"youngs_modulus", "stiffness"},
                        "give it one: brain has about 1e4 Pa; or give the N/m of each spring");
     }
-    require(require.has("poisson") ? "poisson" : "model",
-            body.material.youngs_modulus > 0 || body.material.model != MaterialModel::tissue,
-            "tissue without youngs_modulus", "give the modulus, in Pa");
+    require("stiffness", body.material.stiffness == 0 || body.material.model != MaterialModel::tissue,
+            "tissue with a stiffness of springs", "give it youngs_modulus, in Pa");
     require("bending", body.sheet || !require.has("bending"),
             "bending of a body that is not a sheet of triangles",
             "give cloth flexion springs, or use sheet = true with a surface");

@@ -36,8 +36,7 @@ std::string quoted(const std::filesystem::path& file) {
     return text + '"';
 }
 
-// It is scaled to 0.2 m, which suits the step and the hand, and stiff enough to bear its own weight without
-// folding (50 kPa: softer than rubber, stiffer than a liver). Cells of tissue come back from any shape.
+// It is scaled to 0.2 m, which suits the hand, and damped as tissues are (body/tissues.h).
 SceneText scene_around(const char* kind, const std::filesystem::path& file) {
     return {fmt::format(R"([[body]]
 name = "it"
@@ -45,10 +44,9 @@ name = "it"
 size = 0.2
 centre = true
 nodes = 5000
-youngs_modulus = 50000
 density = 1000
-damping = 2
-pin = {{ below = 0.1 }}
+damping = 10
+pin = {{ below = 0.2 }}
 )",
                         kind, quoted(file)),
             file.stem().string(), file.parent_path()};

@@ -125,6 +125,12 @@ struct BodyRecipe {
     bool has_normal_map() const { return !normal_map.empty() || weave; }
     bool is_textured() const { return !colour_map.empty() || has_normal_map(); }
     bool is_cloth() const { return cloth || sheet || (cage && cage->z == 1); }
+    /// Whether nothing is said of how stiff a solid is. Then it is tissue, and build() finds a modulus at
+    /// which it bears its own weight (own_weight.h): three hundredths of strain on Earth, as the scene has
+    /// its down.
+    bool bears_its_weight() const {
+        return !is_cloth() && !springs && material.youngs_modulus == 0 && material.stiffness == 0;
+    }
     bool operator==(const BodyRecipe&) const = default;
 };
 

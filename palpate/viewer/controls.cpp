@@ -304,9 +304,11 @@ void Controls::show_body(Viewer& viewer, std::size_t b) {
         if (sliders_.slide_and_let_go(label, value, middle / 100, middle * 100, format))
             change(key, number(value));
     };
-    amount("Young's mod.", "youngs_modulus", material.youngs_modulus, "%.3g Pa");
+    const TissueCells* cells = tissue_of(viewer.experiment()->models().models[b].body);
+    amount("Young's mod.", "youngs_modulus", cells ? cells->youngs_modulus : material.youngs_modulus,
+           "%.3g Pa");
     if (float ratio = material.poisson;
-        is_tissue(material) && sliders_.slide_and_let_go("Poisson's ratio", ratio, 0, 0.499f, "%.3f"))
+        cells && sliders_.slide_and_let_go("Poisson's ratio", ratio, 0, 0.499f, "%.3f"))
         change("poisson", number(ratio));
     amount("stiffness", "stiffness", material.stiffness, "%.3g N/m");
     if (recipe.springs) {

@@ -83,7 +83,7 @@ TEST(Command, RunsAndReports) {
     Scratch scratch;
     const Outcome outcome = palpate("run box --frames 30 --report " + (scratch / "r.json").string());
     EXPECT_EQ(outcome.status, 0) << outcome.output;
-    EXPECT_NE(outcome.output.find("nodes, springs"), std::string::npos);
+    EXPECT_NE(outcome.output.find("nodes, cells"), std::string::npos);
     EXPECT_NE(read_text(scratch / "r.json").find("\"diverged\": false"), std::string::npos);
 }
 

@@ -252,8 +252,9 @@ TEST(Notes, ABodyThatCannotHoldItself) {
     EXPECT_FALSE(has_note(run_for(soft, 1), "its own weight"));
     soft.replace(soft.find("3e5"), 3, "1e3");
     const Report report = run_for(soft, 1);
-    EXPECT_TRUE(has_note(report, "cube: its own weight deforms it by about 25 % of its height"));
-    EXPECT_TRUE(has_note(report, "give it youngs_modulus = 2.5e+03 Pa"));
+    EXPECT_TRUE(
+        has_note(report, "cube: its own weight strains it by 49 %"));  // 1000 kg/m³ x 9.81 m/s² x 5 cm
+    EXPECT_TRUE(has_note(report, "give it youngs_modulus = 4.9e+03 Pa for 10 %"));
     EXPECT_FALSE(has_note(run_for(soft + "[simulation]\ngravity = [0, 0, 0]\n", 1), "its own weight"));
     soft.replace(soft.find("1e3"), 3, "2.5e3");
     EXPECT_FALSE(has_note(run_for(soft, 1), "its own weight"));

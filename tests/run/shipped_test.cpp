@@ -106,10 +106,13 @@ TEST(Dropped, ClosedMeshesComeToRest) {
     Scratch scratch;
     Mesh dumbbell = both(ellipsoid(vec3(0.03f), 9), ellipsoid({0.1f, 0.012f, 0.012f}, 9));
     for (vec3& p : dumbbell.positions) p += 0.002f * vec3(std::sin(90 * p.y), std::sin(110 * p.z), 0);
+    Mesh leaning = ellipsoid({0.03f, 0.3f, 0.03f}, 12);
+    for (vec3& p : leaning.positions) p.x += 0.4f * p.y + p.y * p.y;
     const std::pair<const char*, Mesh> meshes[] = {{"ball", ellipsoid(vec3(0.5f), 12)},
                                                    {"egg", ellipsoid({1, 0.4f, 0.6f}, 14)},
                                                    {"plate", block(vec3(0), {0.001f, 0.00007f, 0.0008f})},
                                                    {"rod", block(vec3(0), {0.02f, 0.3f, 0.02f})},
+                                                   {"leaning rod", leaning},
                                                    {"dumbbell", dumbbell}};
     for (const auto& [name, mesh] : meshes) {
         SCOPED_TRACE(name);

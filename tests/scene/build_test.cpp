@@ -10,6 +10,7 @@
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -328,6 +329,31 @@ TEST(Build, RegionsSayHowStiffTheyAreInThreeWays) {
     const Models none = make(cube + "[[body.region]]\nbox = [[8, 8, 8], [9, 9, 9]]\nfactor = 3\n");
     EXPECT_TRUE(has_note(none, "cube, region 1: box selects no node"));
     EXPECT_TRUE(strengthened(none.models[0].body, 3).empty());
+}
+
+// With no modulus it gets one at which its own weight strains it by three hundredths, however large it is.
+TEST(Build, ABodyWithoutAModulusBearsItsWeight) {
+    auto modulus = [](const std::string& more, float spacing) {
+        const Models made =
+            make(fmt::format("[[body]]\nname = \"cube\"\ndims = [3, 11, 3]\ndensity = 1000\n"
+                             "spacing = {}\npin = {{ below = 0 }}\n{}",
+                             spacing, more));
+        EXPECT_TRUE(has_note(made, "cube: it is given a youngs_modulus of"));
+        return tissue_of(made.models[0].body)->youngs_modulus;
+    };
+    for (float h : {0.001f, 0.013f, 0.4f}) {
+        const float expected = 1000 * 9.81f * 9.5f * h / 0.03f;
+        EXPECT_LE(std::abs(modulus("", h) / expected - 1), 0.05f);
+        EXPECT_EQ(modulus("[simulation]\ngravity = [0, -2, 0]\n", h), modulus("", h));
+        const float lying = modulus("[simulation]\ngravity = [-9, 0, 0]\n", h);  // two of ten layers high
+        EXPECT_LT(lying, 0.3f * modulus("", h));
+    }
+    const Body hard = make(
+                          "[[body]]\ndims = [3, 5, 3]\nspacing = 0.01\ndensity = 1000\n[[body.region]]\n"
+                          "box = [[-1, -1, -1], [1, 0.001, 1]]\nyoungs_modulus = 5000\n")
+                          .models[0]
+                          .body;
+    EXPECT_FALSE(std::ranges::all_of(tissue_of(hard)->weights, [](float weight) { return weight == 1; }));
 }
 
 // A NIfTI file of 3 x 3 x 3 voxels of 10 mm whose axes are the world's, the first of them at the origin.

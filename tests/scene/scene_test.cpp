@@ -245,7 +245,7 @@ TEST(Scene, ASolidIsOfTissueUnlessItsSpringsAreMeant) {
     EXPECT_FALSE(is_tissue(material("poisson = 0.3\n", {"body.cube.stiffness=3"})));
     EXPECT_FALSE(is_tissue(parse(bare + "tissue = \"brain\"\nmodel = \"springs\"\n").bodies[0].material));
     expect_words(refusal(bare + "density = 1\nstiffness = 1\nmodel = \"tissue\"\n"),
-                 {"tissue without youngs_modulus", "line 7"});
+                 {"tissue with a stiffness of springs", "line 6"});
     expect_words(refusal(small + "model = \"solid\"\n"), {"model", "line 8", "tissue", "springs"});
 }
 
