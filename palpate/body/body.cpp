@@ -47,7 +47,7 @@ bool has_cubes(const Body& body) {
         bool is_cube = glm::determinant(edges) > 0;
         for (int k = 0; k < 8; ++k)
             is_cube = is_cube && body.at[std::size_t(nodes[std::size_t(k)])] ==
-                                     body.at[std::size_t(nodes[0])] + ivec3(k & 1, k >> 1 & 1, k >> 2);
+                                     body.at[std::size_t(nodes[0])] + cell_corner(k);
         for (int k = 0; k < 3; ++k) {
             is_cube = is_cube && std::abs(glm::length(edges[k]) - body.spacing) <= hair;
             is_cube = is_cube && std::abs(glm::dot(edges[k], edges[(k + 1) % 3])) <= hair * body.spacing;

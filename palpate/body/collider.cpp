@@ -1,6 +1,7 @@
 #include "palpate/body/collider.h"
 
 #include "palpate/base/error.h"
+#include "palpate/body/grid.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/solid.h"
 
@@ -20,7 +21,7 @@ float DistanceField::at(vec3 p) const {
     const vec3 part = place - vec3(cell);
     float sum = 0;
     for (int k = 0; k < 8; ++k) {
-        const ivec3 side(k & 1, k >> 1 & 1, k >> 2), c = cell + side;
+        const ivec3 side = cell_corner(k), c = cell + side;
         const vec3 w = glm::mix(1.0f - part, part, vec3(side));
         sum += w.x * w.y * w.z * distance[(std::size_t(c.z) * dims.y + c.y) * dims.x + c.x];
     }

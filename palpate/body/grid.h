@@ -44,6 +44,9 @@ struct GridIndex {
     }
 };
 
+/// Corner k of a cell, as seen from its lowest: x in the lowest bit, then y, then z.
+constexpr ivec3 cell_corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
+
 /// Calls visit(place) for every place of a box from (0, 0, 0), x fastest.
 template <class Visit>
 void for_each_place(ivec3 dims, Visit visit) {

@@ -47,15 +47,12 @@ std::vector<Link> links_of_kinds(const SpringKinds& stiffness, float spacing) {
     return links;
 }
 
-// Corner k of a cell: x in the lowest bit, then y, then z. Seen from a node, the cell whose corner k it is.
-constexpr ivec3 corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
-
 // The nodes of a grid that exist: 0 at the corners of filled cells, -1 elsewhere.
 GridIndex corners_of(const Cells& cells) {
     GridIndex grid(ivec3(0), cells.dims + 1);
     for_each_place(cells.dims, [&](ivec3 c) {
         if (cells.at(c))
-            for (int k = 0; k < 8; ++k) grid[c + corner(k)] = 0;
+            for (int k = 0; k < 8; ++k) grid[c + cell_corner(k)] = 0;
     });
     return grid;
 }
@@ -66,7 +63,7 @@ int count(const GridIndex& grid) {
 
 int filled_around(const Cells& cells, ivec3 p) {
     int filled = 0;
-    for (int k = 0; k < 8; ++k) filled += cells.at(p - corner(k));
+    for (int k = 0; k < 8; ++k) filled += cells.at(p - cell_corner(k));
     return filled;
 }
 
@@ -75,7 +72,7 @@ int filled_around(const Cells& cells, ivec3 p) {
 int filled_beside(const Cells& cells, ivec3 p, ivec3 offset) {
     int filled = 0;
     for (int k = 0; k < 8; ++k) {
-        const ivec3 cell = p - corner(k), end = p + offset - cell;
+        const ivec3 cell = p - cell_corner(k), end = p + offset - cell;
         const bool holds =
             glm::all(glm::greaterThanEqual(end, ivec3(0))) && glm::all(glm::lessThanEqual(end, ivec3(1)));
         filled += holds && cells.at(cell);
@@ -182,7 +179,7 @@ Body assemble(GridIndex grid, const Cells& cells, vec3 origin, float spacing, st
     for_each_place(cells.dims, [&](ivec3 c) {
         if (!cells.at(c)) return;
         std::array<int, 8>& nodes = body.cells.emplace_back();
-        for (int k = 0; k < 8; ++k) nodes[k] = grid[c + corner(k)];
+        for (int k = 0; k < 8; ++k) nodes[k] = grid[c + cell_corner(k)];
     });
     if (is_tissue(material) && body.cells.empty())
         throw Error("tissue without a cell", "the lattice",

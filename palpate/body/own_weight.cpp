@@ -14,7 +14,7 @@ struct Part {
 };
 
 // All that lies between two planes across gravity.
-struct Slice {
+struct Layer {
     double mass = 0;               // kg
     dvec3 mass_moment = dvec3(0);  // kg m: its mass times its centre
     std::vector<Part> parts;       // of its cross-section
@@ -26,20 +26,20 @@ struct Load {
     double mass = 0;
     dvec3 moment = dvec3(0);
 
-    void add(const Slice& slice) {
-        mass += slice.mass;
-        moment += slice.mass_moment;
+    void add(const Layer& layer) {
+        mass += layer.mass;
+        moment += layer.mass_moment;
     }
 };
 
-std::vector<Slice> slices(const Body& body, std::span<const int> held, dvec3 down) {
+std::vector<Layer> layers(const Body& body, std::span<const int> held, dvec3 down) {
     const double h = body.spacing, top = [&] {
         double least = 1e300;
         for (vec3 p : body.positions) least = std::min(least, glm::dot(dvec3(p), down));
         return least;
     }();
-    std::vector<Slice> all;
-    auto at = [&](dvec3 p) -> Slice& {
+    std::vector<Layer> all;
+    auto at = [&](dvec3 p) -> Layer& {
         const auto s = std::size_t(std::max(glm::dot(p, down) - top, 0.0) / h + 1e-3);
         if (s >= all.size()) all.resize(s + 1);
         return all[s];
@@ -52,18 +52,18 @@ std::vector<Slice> slices(const Body& body, std::span<const int> held, dvec3 dow
     }
     for (std::size_t i = 0; i < body.count(); ++i) {
         if (!(body.inverse_mass[i] > 0)) continue;
-        Slice& slice = at(dvec3(body.positions[i]));
-        slice.mass += 1.0 / body.inverse_mass[i];
-        slice.mass_moment += dvec3(body.positions[i]) / double(body.inverse_mass[i]);
+        Layer& layer = at(dvec3(body.positions[i]));
+        layer.mass += 1.0 / body.inverse_mass[i];
+        layer.mass_moment += dvec3(body.positions[i]) / double(body.inverse_mass[i]);
     }
     for (int node : held) at(dvec3(body.positions[std::size_t(node)])).is_held = true;
     return all;
 }
 
-double stress(const Slice& slice, const Load& load, double h, dvec3 down, double gravity) {
+double stress(const Layer& layer, const Load& load, double h, dvec3 down, double gravity) {
     double area = 0;
     dvec3 middle(0);
-    for (const Part& part : slice.parts) {
+    for (const Part& part : layer.parts) {
         area += part.area;
         middle += part.area * part.middle;
     }
@@ -74,7 +74,7 @@ double stress(const Slice& slice, const Load& load, double h, dvec3 down, double
     const double length = glm::length(arm), weight = load.mass * gravity;
     if (!(length > 0)) return weight / area;
     double second = 0, outermost = 0;  // the second moment of the area along the arm, m⁴; m
-    for (const Part& part : slice.parts) {
+    for (const Part& part : layer.parts) {
         const double out = glm::dot(part.middle - middle, arm) / length;
         second += part.area * (out * out + h * h / 12);
         outermost = std::max(outermost, std::abs(out) + h / 2);
@@ -100,7 +100,7 @@ double own_weight_stress(const Body& body, std::span<const int> held, vec3 gravi
     const double strength = glm::length(gravity);
     if (body.cells.empty() || !(strength > 0)) return 0;
     const dvec3 down = dvec3(gravity) / strength;
-    std::vector<Slice> all = slices(body, held, down);
+    std::vector<Layer> all = layers(body, held, down);
     if (held.empty()) all.back().is_held = true;
     return std::max(largest(all.begin(), all.end(), body.spacing, down, strength),
                     largest(all.rbegin(), all.rend(), body.spacing, down, strength));

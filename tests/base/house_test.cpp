@@ -79,14 +79,35 @@ TEST(House, NothingIncludesTheCommand) {
 TEST(House, TheWholeLibraryIsInItsOneHeader) {
     const std::string all = read_text(house / "palpate.h");
     // Parts inside the house that a user does not reach for.
-    const std::set<std::string> inner = {
-        "solver/origin.h",    "solver/cpu/hinges.h",    "base/pipe.h",         "base/pack-inl.h",
-        "solver/schedule.h",  "solver/cpu/kernel.h",    "solver/cpu/layout.h", "solver/cpu/body_memory.h",
-        "solver/cpu/ties.h",  "body/embedding_parts.h", "body/cells.h",        "body/grid.h",
-        "mesh/corners.h",     "files/extension.h",      "files/bytes.h",       "files/gltf.h",
-        "mesh/parts.h",       "scene/check.h",          "scene/toml_reader.h", "solver/pass.h",
-        "solver/check.h",     "solver/machine.h",       "solver/pushes.h",     "solver/reference/node.h",
-        "scene/thin_walls.h", "solver/short_steps.h",   "mesh/pieces.h",       "mesh/face_pairs.h"};
+    const std::set<std::string> inner = {"solver/origin.h",
+                                         "solver/cpu/hinges.h",
+                                         "solver/cpu/node_access-inl.h",
+                                         "base/pipe.h",
+                                         "base/pack-inl.h",
+                                         "solver/schedule.h",
+                                         "solver/cpu/kernel.h",
+                                         "solver/cpu/layout.h",
+                                         "solver/cpu/body_memory.h",
+                                         "solver/cpu/ties.h",
+                                         "body/embedding_parts.h",
+                                         "body/cells.h",
+                                         "body/grid.h",
+                                         "mesh/corners.h",
+                                         "files/extension.h",
+                                         "files/bytes.h",
+                                         "files/gltf.h",
+                                         "mesh/parts.h",
+                                         "scene/check.h",
+                                         "scene/toml_reader.h",
+                                         "solver/pass.h",
+                                         "solver/check.h",
+                                         "solver/machine.h",
+                                         "solver/pushes.h",
+                                         "solver/reference/node.h",
+                                         "scene/thin_walls.h",
+                                         "solver/short_steps.h",
+                                         "mesh/pieces.h",
+                                         "mesh/face_pairs.h"};
     for (const auto& entry : std::filesystem::recursive_directory_iterator(house)) {
         const std::string below = std::filesystem::relative(entry.path(), house).string();
         const bool part_of_drawing = below.starts_with("gl/") || below.starts_with("render/") ||

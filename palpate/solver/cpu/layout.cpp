@@ -151,7 +151,7 @@ class GridLayout {
         if (link < stencil_.links.size() && stencil_.quarters(node, link) > 0) return true;
         if (cells_.empty()) return false;
         for (int k = 0; k < 8; ++k) {
-            const ivec3 end = ivec3(k & 1, k >> 1 & 1, k >> 2) + links_[link];
+            const ivec3 end = cell_corner(k) + links_[link];
             const bool holds =
                 glm::all(glm::greaterThanEqual(end, ivec3(0))) && glm::all(glm::lessThanEqual(end, ivec3(1)));
             if (holds && cells_[node][std::size_t(k)] >= 0) return true;
