@@ -5,33 +5,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate {
 namespace {
-
-constexpr std::size_t most_threads_of_a_hold = 4;
 
 float width_of(const Body& body) { return glm::length(bounds(body.positions).size()); }
 
 }  // namespace
 
-Hold Hold::pulling(const Experiment& experiment, const Hit& hit) {
+Hold Hold::pulling(const Experiment& experiment, const Hit& hit, float radius) {
     const Body& body = experiment.models().models[hit.surface].body;
     const auto positions = experiment.play().nodes(hit.surface).positions;
-    std::vector<int> nearest;
-    for (std::size_t i = 0; i < body.count(); ++i)
-        if (body.inverse_mass[i] > 0) nearest.push_back(int(i));
-    const std::size_t count = std::min(nearest.size(), most_threads_of_a_hold);
-    auto distance = [&](int node) { return glm::distance(positions[std::size_t(node)], hit.place); };
-    std::partial_sort(nearest.begin(), nearest.begin() + std::ptrdiff_t(count), nearest.end(),
-                      [&](int a, int b) { return distance(a) < distance(b); });
-    nearest.resize(count);
+    auto distance = [&](std::size_t node) {
+        return body.inverse_mass[node] > 0 ? glm::distance(positions[node], hit.place)
+                                           : std::numeric_limits<float>::infinity();
+    };
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < body.count(); ++i) nearest = std::min(nearest, distance(i));
+    const float reach = std::max(radius, nearest + 1.5f * body.spacing), strength = strength_for(body).pull;
     Hold hold;
-    const float strength = strength_for(body).pull;
-    for (int node : nearest)
-        if (distance(node) < distance(nearest[0]) + 1.5f * body.spacing)
-            hold.threads_.push_back({node, positions[std::size_t(node)] - hit.place,
-                                     strength / body.inverse_mass[std::size_t(node)]});
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        if (!(distance(i) < reach)) continue;
+        const float part = 1 - distance(i) * distance(i) / (reach * reach);
+        hold.threads_.push_back(
+            {int(i), positions[i] - hit.place, strength * part * part / body.inverse_mass[i]});
+    }
     if (hold.threads_.empty()) throw Error("no free node to pull", "body " + body.name, "release some pins");
     hold.body_ = hit.surface;
     hold.nodes_ = body.count();
@@ -140,7 +139,7 @@ void Holds::follow(const Experiment& experiment, const std::optional<Felt>& felt
     } else if (!device_ && felt->count > felt->lasting) {
         const auto touched = std::size_t(felt->surfaces[std::size_t(felt->lasting)]);
         if (touched < experiment.models().models.size())
-            device_ = Hold::pulling(experiment, {.surface = touched, .place = place});
+            device_ = Hold::pulling(experiment, {.surface = touched, .place = place}, options.tip);
     }
     if (device_) device_->go_to(place);
 }

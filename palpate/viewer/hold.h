@@ -13,8 +13,9 @@ namespace palpate {
 /// One hold on a body: the user's hand grasps and pulls it, or presses a tip into it.
 class Hold {
  public:
-    /// Grasps the free nodes around a place of a body's surface. Throws Error if there are none near.
-    static Hold pulling(const Experiment& experiment, const Hit& hit);
+    /// Grasps the free nodes within a radius of a place of a body's surface, those near it most firmly; where
+    /// there are few, those around the nearest. Throws Error if the body has none.
+    static Hold pulling(const Experiment& experiment, const Hit& hit, float radius);
 
     /// A tip that comes along a view ray, touches the surface at `hit` and presses in by half its radius.
     static Hold pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius);

@@ -161,7 +161,7 @@ void Viewer::reach_in() {
 
 void Viewer::pull_or_press(const Hit& hit) {
     const Hold hold = options.mode == Mode::pull
-                          ? Hold::pulling(*experiment(), hit)
+                          ? Hold::pulling(*experiment(), hit, options.tip)
                           : Hold::pressing(*experiment(), hit, sight().ray(), options.tip);
     holds_.take(hold, sight());
     drag_ = Drag::hold;

@@ -314,7 +314,7 @@ TEST_F(GuiTest, KeysDoWhatTheHelpSays) {
     EXPECT_FALSE(gui.shows_help);
     viewer.change({"body.1.damping=9"});
     gui.key(viewer, 'Z', true, false);
-    EXPECT_EQ(viewer.experiment()->scene().bodies[0].material.damping, 2);
+    EXPECT_EQ(viewer.experiment()->scene().bodies[0].material.damping, 3);
     gui.key(viewer, 'Z', true, true);
     EXPECT_EQ(viewer.experiment()->scene().bodies[0].material.damping, 9);
     for (int key = 0; key < 128; ++key)  // whatever comes

@@ -137,7 +137,7 @@ TEST_F(WindowTest, KeysAreHeard) {
     viewer().change({"body.1.damping=7"});
     person->key(XK_z, true);
     rounds(3);
-    EXPECT_EQ(viewer().experiment()->scene().bodies[0].material.damping, 2);
+    EXPECT_EQ(viewer().experiment()->scene().bodies[0].material.damping, 3);
     person->key(XK_Tab);
     rounds(2);
     EXPECT_TRUE(window->gui().shows_panel);
