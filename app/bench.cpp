@@ -61,7 +61,7 @@ void run_benchmarks(const BenchArguments& arguments) {
     check_output(arguments.plot, ".svg");
     const auto draws = [&](const Benchmark& one) { return one.curves && is_wanted(one, arguments); };
     if (!arguments.plot.empty() && !std::ranges::any_of(benchmarks(), draws))
-        throw CLI::ValidationError("--plot", "name a benchmark that has curves: pipeline or touch");
+        throw CLI::ValidationError("--plot", "name a benchmark that has curves: pipeline, touch or tissue");
     const unsigned cores = std::thread::hardware_concurrency();
     fmt::print(
         "Measured on {}, {} core{}, {}; best and median of {} rounds; ratios are of the bests (of the "
@@ -104,6 +104,6 @@ void add_bench(CLI::App& app) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command->add_option("--json", arguments->json, "write the figures as JSON");
-    command->add_option("--plot", arguments->plot, "write the curves of pipeline or touch as SVG");
+    command->add_option("--plot", arguments->plot, "write the curves of pipeline, touch or tissue as SVG");
     command->callback([arguments] { run_benchmarks(*arguments); });
 }

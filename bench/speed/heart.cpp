@@ -133,17 +133,6 @@ class Shown {
     Picture picture_;
 };
 
-// The cell of a case in the tables; its name is all three.
-struct Cell {
-    std::string table, row, column;
-    std::string name() const { return table + " / " + row + " / " + column; }
-};
-
-Cell cell_of(const std::string& name) {
-    const auto first = name.find(" / "), last = name.rfind(" / ");
-    return {name.substr(0, first), name.substr(first + 3, last - first - 3), name.substr(last + 3)};
-}
-
 std::string described(const Subject& subject, const Mesh& surface) {
     return fmt::format("{} ({} nodes, {} faces)", subject.about, subject.body.count(),
                        surface.triangles.size());
@@ -235,10 +224,6 @@ Timings run(int rounds) {
     return timings;
 }
 
-void note(std::vector<std::string>& list, const std::string& name) {
-    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
-}
-
 // The CPU, or a picture without culling.
 bool is_baseline(const std::string& column) {
     return column.starts_with("cpu") || column == "reference" || column == "all drawn";
@@ -247,12 +232,10 @@ bool is_baseline(const std::string& column) {
 std::string text(const Timings& timings) {
     std::string text = timings.driver + "\n\nBest, and in brackets median. 2005 was a GeForce 6800 Ultra.\n";
     for (const std::string& table : {step_table, frame_table, culling_table, whole_table}) {
-        std::vector<std::string> rows, columns;
+        Outline outline;
         for (const Case& of : timings.cases)
-            if (const Cell cell = cell_of(of.name); cell.table == table) {
-                note(rows, cell.row);
-                note(columns, cell.column);
-            }
+            if (const Cell cell = cell_of(of.name); cell.table == table) outline.add(cell);
+        const auto& [rows, columns] = outline;
         if (rows.empty()) continue;
         std::vector<std::string> cells{""};
         cells.insert(cells.end(), columns.begin(), columns.end());

@@ -43,6 +43,19 @@ const Rate* Timings::find(const std::string& name) const {
     return nullptr;
 }
 
+Cell cell_of(const std::string& name) {
+    const auto first = name.find(" / "), last = name.rfind(" / ");
+    return {name.substr(0, first), name.substr(first + 3, last - first - 3), name.substr(last + 3)};
+}
+
+void Outline::add(const Cell& cell) {
+    auto note = [](std::vector<std::string>& list, const std::string& name) {
+        if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+    };
+    note(rows, cell.row);
+    note(columns, cell.column);
+}
+
 int times_for(double seconds) { return std::clamp(int(0.05 / seconds), 1, 100); }
 
 Timings time(std::vector<Case> cases, int rounds, int limits) {
@@ -143,6 +156,7 @@ const std::vector<Benchmark>& benchmarks() {
         pipeline(),
         heart(),
         touch(),
+        tissue_study(),
 #ifdef PALPATE_VIEWER
         viewer(),
 #endif

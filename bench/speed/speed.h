@@ -76,6 +76,19 @@ int times_for(double seconds);
 /// if Palpate was built without it.
 std::vector<Case> bullet(const Body& body);
 
+/// The cell of a case or a figure in a table; its name is all three.
+struct Cell {
+    std::string table, row, column;
+    std::string name() const { return table + " / " + row + " / " + column; }
+};
+Cell cell_of(const std::string& name);
+
+/// The rows and columns of a table, in the order in which its cells come.
+struct Outline {
+    std::vector<std::string> rows, columns;
+    void add(const Cell& cell);
+};
+
 /// A table, in Markdown.
 std::string markdown(const Timings& timings, const std::string& unit);
 
@@ -93,9 +106,10 @@ std::vector<Case> lattice_cases();
 std::vector<Case> cloth_cases();
 std::vector<Case> embed_cases();
 
-Benchmark pipeline();  // the 2012 paper's tables
-Benchmark heart();     // the 2005 paper's figures
-Benchmark touch();     // the 2007 paper's table
-Benchmark viewer();    // only where the viewer was built (PALPATE_VIEWER)
+Benchmark pipeline();      // the 2012 paper's tables
+Benchmark heart();         // the 2005 paper's figures
+Benchmark touch();         // the 2007 paper's table
+Benchmark tissue_study();  // against theory and finite elements
+Benchmark viewer();        // only where the viewer was built (PALPATE_VIEWER)
 
 }  // namespace palpate::speed

@@ -1,0 +1,336 @@
+#include "bench/tissue.h"
+
+#include "palpate/base/error.h"
+#include "palpate/body/lattice.h"
+#include "palpate/body/select.h"
+#include "palpate/solver/forces.h"
+#include "palpate/solver/solver.h"
+#include "palpate/solver/stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+
+namespace palpate::studies {
+namespace {
+
+constexpr double pi = 3.14159265358979;
+
+using Vectors = std::vector<dvec3>;  // one a node
+
+Material tissue(double modulus, double poisson) {
+    return {.youngs_modulus = float(modulus), .poisson = float(poisson), .density = float(density)};
+}
+
+double shear_modulus(double modulus, double poisson) { return modulus / (2 * (1 + poisson)); }
+
+// ---- small deformations ----
+
+double dot(const Vectors& a, const Vectors& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i], b[i]);
+    return sum;
+}
+
+// The displacement of a body in equilibrium under small forces, by conjugate gradients on its stiffness at
+// rest. `free` is 1 for the components that move by themselves, 0 for those that stay as they are given.
+Vectors displaced(const Body& body, Vectors displacement, const Vectors& free, const Vectors& force) {
+    const Forces terms(body);
+    const Vectors rest(body.positions.begin(), body.positions.end());
+    Vectors stiff(rest.size());
+    terms.stiffness_times(rest, displacement, stiff);
+    Vectors left(rest.size()), along;
+    for (std::size_t i = 0; i < rest.size(); ++i) left[i] = free[i] * (force[i] - stiff[i]);
+    along = left;
+    const double first = dot(left, left);
+    double square = first;
+    while (square > 1e-16 * first) {
+        terms.stiffness_times(rest, along, stiff);
+        const double step = square / dot(along, stiff), before = square;
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            displacement[i] += step * along[i];
+            left[i] -= step * free[i] * stiff[i];
+        }
+        square = dot(left, left);
+        for (std::size_t i = 0; i < rest.size(); ++i) along[i] = left[i] + square / before * along[i];
+    }
+    return displacement;
+}
+
+}  // namespace
+
+double tissue_sag(int cells, float poisson) {
+    const float h = 1.0f / 256;  // so that cells are cubes to the bit
+    const int length = 12 * cells;
+    const double modulus = 2000, pull = 1e-3;  // m/s²
+    const Body body = lattice({length + 1, cells + 1, cells + 1}, h, tissue(modulus, poisson));
+    Vectors free(body.count(), dvec3(1)), weight;
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        weight.push_back(dvec3(0, -pull / double(body.inverse_mass[i]), 0));
+        if (body.at[i].x == 0) free[i] = dvec3(0);
+    }
+    const Vectors moved = displaced(body, Vectors(body.count(), dvec3(0)), free, weight);
+    double sag = 0;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.at[i].x == length) sag -= moved[i].y / std::pow(cells + 1, 2);
+    const double nu = double(poisson), thick = cells * double(h), far = length * double(h),
+                 load = density * thick * thick * pull, shape = 10 * (1 + nu) / (12 + 11 * nu);
+    return sag / (load * std::pow(far, 4) / (8 * modulus * std::pow(thick, 4) / 12) +
+                  load * far * far / (2 * shape * shear_modulus(modulus, nu) * thick * thick));
+}
+
+double tissue_torque(int cells, float poisson) {
+    const float h = 1.0f / 256;
+    const int length = 8 * cells;
+    const double modulus = 2000, turn = 1e-6, thick = cells * double(h);
+    const Body body = lattice({length + 1, cells + 1, cells + 1}, h, tissue(modulus, poisson));
+    Vectors free(body.count(), dvec3(1)), moved(body.count(), dvec3(0)), from_axis;
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        from_axis.push_back(dvec3(0, body.positions[i].y, body.positions[i].z) -
+                            dvec3(0, thick, thick) / 2.0);
+        const int end = body.at[i].x;
+        if (end != 0 && end != length) continue;
+        free[i] = dvec3(1, 0, 0);
+        if (end == length) moved[i] = glm::cross(dvec3(turn, 0, 0), from_axis[i]);
+    }
+    free[0] = dvec3(0);  // or it could move along its axis
+    moved = displaced(body, moved, free, Vectors(body.count(), dvec3(0)));
+    Vectors force(body.count());
+    const Vectors rest(body.positions.begin(), body.positions.end());
+    Forces(body).stiffness_times(rest, moved, force);
+    double torque = 0;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.at[i].x == length) torque += glm::cross(from_axis[i], force[i]).x;
+    const double far = length * double(h);
+    return torque / (shear_modulus(modulus, double(poisson)) * 0.1406 * std::pow(thick, 4) * turn / far);
+}
+
+// ---- damped motion ----
+
+namespace {
+
+double shear_speed(const Body& body) { return std::sqrt(double(tissue_of(body)->shear()) / density); }
+
+std::unique_ptr<Solver> weightless(Body body, double damping) {
+    body.damping = float(damping);
+    return make_solver(body, {.shortest_step = 0, .gravity = vec3(0)});
+}
+
+// The same for a body that is deformed far. Cells that are pressed to 0.4 of their height vibrate 1.42 times
+// as fast as at rest, which is all that the automatic step has in reserve.
+std::unique_ptr<Solver> far_from_rest(Body body, double damping, double gravity) {
+    body.damping = float(damping);
+    const double step = 0.8 * automatic_step(Integrator::verlet, highest_frequency(body), damping);
+    return make_solver(body, {.step = step, .shortest_step = 0, .gravity = {0, -float(gravity), 0}});
+}
+
+// What is measured again and again until it stays within a fraction.
+template <class Measure>
+double settled(double fraction, Measure measure) {
+    double before = measure();
+    for (int round = 0; round < 100; ++round) {
+        const double now = measure();
+        if (std::abs(now - before) <= fraction * std::abs(now)) return now;
+        before = now;
+    }
+    throw Error("a study of tissue does not come to rest");
+}
+
+// Of the cells, by their mean edges; over that at rest.
+double volume_ratio(const Body& body, const Vectors& positions) {
+    double volume = 0;
+    for (const std::array<int, 8>& cell : body.cells) {
+        dmat3 edges(0);
+        for (std::size_t k = 0; k < 8; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                edges[axis] += (k >> axis & 1 ? 0.25 : -0.25) * positions[std::size_t(cell[k])];
+        volume += glm::determinant(edges);
+    }
+    return volume / (double(body.cells.size()) * std::pow(double(body.spacing), 3));
+}
+
+std::size_t node_at(const Body& body, ivec3 place) {
+    return std::size_t(std::find(body.at.begin(), body.at.end(), place) - body.at.begin());
+}
+
+// ---- a tip ----
+
+Body on_the_ground(ivec3 cells, float spacing, const Material& material) {
+    Body body = lattice(cells + 1, spacing, material);
+    pin(body, nodes_below(body, 0, {0, -1, 0}));
+    return body;
+}
+
+// Moves a tip down, and returns the force on it when the body has come to rest.
+double push_down(Solver& solver, Press& tip, double way, double seconds) {
+    tip.velocity = {0, -float(way / seconds), 0};
+    solver.step(seconds, {.presses = {&tip, 1}});
+    tip.centre += float(seconds) * tip.velocity;
+    tip.velocity = vec3(0);
+    return settled(5e-4, [&] {
+        return solver.step(seconds, {.presses = {&tip, 1}}).reactions[0].y / seconds;
+    });
+}
+
+// Hertz, on a half-space.
+double hertz_force(double modulus, double nu, double radius, double depth) {
+    return 4 / 3.0 * modulus / (1 - nu * nu) * std::sqrt(radius) * std::pow(depth, 1.5);
+}
+
+// By how much more a bonded layer resists: Dimitriadis, Horkay, Maresca, Kachar and Chadwick 2002.
+double layer_factor(double nu, double radius, double depth, double height) {
+    const double a = -(1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1 - nu),
+                 b = (0.6387 - 1.0277 * nu + 1.5164 * nu * nu) / (1 - nu),
+                 x = std::sqrt(radius * depth) / height, cube = std::pow(a, 3);
+    return 1 - 2 * a / pi * x + 4 * a * a / (pi * pi) * x * x -
+           8 / std::pow(pi, 3) * (cube + 4 * pi * pi / 15 * b) * std::pow(x, 3) +
+           16 * a / std::pow(pi, 4) * (cube + 3 * pi * pi / 5 * b) * std::pow(x, 4);
+}
+
+}  // namespace
+
+std::vector<Indentation> indent(const Indenter& of, std::span<const double> depths) {
+    const double h = 0.001, modulus = 2000, nu = double(of.poisson), radius = of.radius * h,
+                 height = of.height * h;
+    const Body body = on_the_ground({of.width, of.height, of.width}, float(h), tissue(modulus, nu));
+    const double wave = height / shear_speed(body);   // s, from top to bottom
+    const auto solver = weightless(body, pi / wave);  // critical for the slowest shear wave
+    const std::size_t apex = node_at(body, {of.width / 2, of.height, of.width / 2});
+    // So stiff that the tip sinks in by hundredths of what it presses, and the step stays about as long.
+    const TissueCells& cells = *tissue_of(body);
+    const double pressure = 4 * double(cells.lame() + cells.shear()) / h;
+    Press tip{body.positions[apex] + vec3(0, float(radius), 0), vec3(0), float(radius),
+              float(pressure * pi * radius * radius)};
+    std::vector<Indentation> found;
+    double deep = 0;
+    for (double depth : depths) {
+        const double force = push_down(*solver, tip, (depth - std::exchange(deep, depth)) * h, wave);
+        const double sunk = double(body.positions[apex].y) - solver->state().positions[apex].y;
+        const double over_hertz = force / hertz_force(modulus, nu, radius, sunk);
+        found.push_back({sunk / h, std::sqrt(radius * sunk) / h, over_hertz,
+                         over_hertz / layer_factor(nu, radius, sunk, height)});
+    }
+    return found;
+}
+
+UnderABall press_with_a_ball() {
+    const float h = 0.005f, radius = 0.03f;
+    const ivec3 cells(18, 12, 18);
+    const Body body = on_the_ground(cells, h, tissue(2000, 0.49));
+    const auto solver = weightless(body, 20);
+    Press tip{h * vec3(cells) * vec3(0.5f, 1, 0.5f) + vec3(0, radius, 0), vec3(0), radius, 30'000};
+    push_down(*solver, tip, 0.022, 1);
+    const State state = solver->state();
+    const double height = cells.y * double(h);
+    double lowest = height;
+    for (std::size_t i = 0; i < body.count(); ++i)
+        if (body.at[i].y == cells.y) lowest = std::min(lowest, state.positions[i].y);
+    return {1 - lowest / height, volume_ratio(body, state.positions),
+            inverted_cells(body, solver->nodes().positions)};
+}
+
+// ---- a block and a beam ----
+
+namespace {
+
+Body body_of(const Block& block, int cells) {
+    const double spacing = block.size.y / cells;
+    return lattice(ivec3(glm::round(block.size / spacing)) + 1, float(spacing),
+                   tissue(block.youngs_modulus, block.poisson));
+}
+
+double force_on(const Body& body, const std::vector<int>& nodes, const Vectors& positions) {
+    Vectors forces(body.count());
+    Forces(body).at(positions, forces);
+    double up = 0;
+    for (int node : nodes) up += forces[std::size_t(node)].y;
+    return up;
+}
+
+}  // namespace
+
+dvec3 pressed_to(const Block& block, Plate plate, double depth, dvec3 place) {
+    auto dish = [](double part) { return std::pow(std::sin(pi * part), 2); };
+    if (plate == Plate::dished) depth *= dish(place.x / block.size.x) * dish(place.z / block.size.z);
+    return place - dvec3(0, depth * block.size.y, 0);
+}
+
+std::vector<PressedBlock> press(const Block& block, Plate plate, std::span<const double> depths, int cells) {
+    Body body = body_of(block, cells);
+    const std::vector<int> top = nodes_below(body, 0, {0, 1, 0});
+    pin(body, nodes_below(body, 0, {0, -1, 0}));
+    pin(body, top);
+    const double wave = block.size.y / shear_speed(body);
+    const auto solver = far_from_rest(body, 2 * pi / wave, block.gravity);
+    std::vector<PressedBlock> found;
+    for (double depth : depths) {
+        std::vector<vec3> places;
+        for (int i : top)
+            places.push_back(pressed_to(block, plate, depth, dvec3(body.positions[std::size_t(i)])));
+        const Move down{top, places};
+        const double force = settled(1e-5, [&] {
+            solver->step(wave, {.moves = {&down, 1}});
+            return force_on(body, top, solver->state().positions);
+        });
+        found.push_back({depth, force, volume_ratio(body, solver->state().positions)});
+    }
+    return found;
+}
+
+BentBeam bend(const Block& of, int cells) {
+    Body body = body_of(of, cells);
+    pin(body, nodes_below(body, 0, {-1, 0, 0}));
+    const std::size_t end = node_at(body, body.at.back() / ivec3(1, 2, 2));
+    // Euler and Bernoulli's, of a beam that is held at one end.
+    const double slowest =
+        3.516 / (of.size.x * of.size.x) * of.size.y * std::sqrt(of.youngs_modulus / (12 * density));
+    const auto solver = far_from_rest(body, 2 * slowest, of.gravity);
+    const double sag = settled(1e-5, [&] {
+        solver->step(1 / slowest);
+        return double(body.positions[end].y) - solver->state().positions[end].y;
+    });
+    return {sag, volume_ratio(body, solver->state().positions)};
+}
+
+// ---- the laws alone ----
+
+namespace {
+
+// The energy of a unit cube stretched along one axis and across.
+using Law = std::function<double(double along, double across)>;
+
+// The stress in a bar with free sides: across it the energy is least.
+double stress_in_a_bar(const Law& law, double along) {
+    double low = 0.8, high = 2;
+    while (high - low > 1e-6) {
+        const double third = (high - low) / 3;
+        if (law(along, low + third) < law(along, high - third))
+            high -= third;
+        else
+            low += third;
+    }
+    const double small = 1e-4;
+    return (law(along + small, low) - law(along - small, low)) / (2 * small);
+}
+
+}  // namespace
+
+double bar_over_calculix(double poisson, double shortening) {
+    const double shear = shear_modulus(1, poisson), bulk = 1 / (3 * (1 - 2 * poisson));
+    const Body cell = lattice(ivec3(2), 1, tissue(1, poisson));
+    const Forces terms(cell);
+    const Law ours = [&](double along, double across) {
+        Vectors corners;
+        for (ivec3 at : cell.at) corners.push_back(dvec3(at) * dvec3(along, across, across));
+        return terms.energy(corners);
+    };
+    const Law theirs = [&](double along, double across) {
+        const double j = along * across * across, square = along * along + 2 * across * across;
+        return shear / 2 * (square * std::pow(j, -2 / 3.0) - 3) + bulk / 2 * (j - 1) * (j - 1);
+    };
+    return stress_in_a_bar(ours, 1 - shortening) / stress_in_a_bar(theirs, 1 - shortening);
+}
+
+}  // namespace palpate::studies
