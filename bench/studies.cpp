@@ -27,6 +27,14 @@ Body chain(const Damping& damping) {
     return body;
 }
 
+Body tissue_chain(const Damping& damping) {
+    Body body = lattice({3, 2, 2}, 1, {.youngs_modulus = 1e6f, .poisson = 0.45f, .density = 1000});
+    pin(body, nodes_in(body, {vec3(-1), vec3(0.1f, 2, 2)}));
+    body.damping = damping.of_nodes;
+    body.link_damping = damping.of_links;
+    return body;
+}
+
 namespace {
 
 constexpr double pi = 3.14159265358979;
@@ -48,9 +56,8 @@ double distance(const State& a, const State& b) {
     return most;
 }
 
-Body small_lattice(const Damping& damping) {
-    Body body =
-        lattice({4, 3, 5}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs});
+Body held_box(const Material& material, const Damping& damping) {
+    Body body = lattice({4, 3, 5}, 0.01f, material);
     body.damping = damping.of_nodes * 20;
     body.link_damping = damping.of_links;
     pin(body, nodes_in(body, {vec3(-1), vec3(0.001f, 1, 1)}));  // otherwise it would rotate for ever
@@ -90,15 +97,23 @@ bool grows(const Body& rest, Integrator integrator, double step) {
 
 }  // namespace
 
-double order(Integrator integrator, const Damping& damping, int steps) {
-    const Body body = chain(damping);
-    const State truth = swing(body, Integrator::rk4, 1 << 14);
+Body small_lattice(const Damping& damping) {
+    return held_box({.youngs_modulus = 5000, .density = 1000}, damping);
+}
+
+Body small_tissue(const Damping& damping) {
+    return held_box({.youngs_modulus = 2000, .poisson = 0.45f, .density = 1000}, damping);
+}
+
+double order(Studied made, Integrator integrator, const Damping& damping, int steps) {
+    const Body body = made(damping);
+    const State truth = swing(body, Integrator::rk4, 16 * steps);
     return std::log2(distance(swing(body, integrator, steps), truth) /
                      distance(swing(body, integrator, 2 * steps), truth));
 }
 
-bool grows(Integrator integrator, const Damping& damping, double part) {
-    const Body body = small_lattice(damping);
+bool grows(Studied made, Integrator integrator, const Damping& damping, double part) {
+    const Body body = made(damping);
     return grows(body, integrator,
                  part * longest_step(integrator, highest_frequency(body), body.damping, body.link_damping));
 }
@@ -202,12 +217,15 @@ double cantilever_sag(int cells) {
     return sag / ends / sag_of(gravity);
 }
 
-Swing energy_swing(Integrator integrator, int steps) {
-    Body body =
-        lattice({3, 2, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs});
+Swing energy_swing(Integrator integrator, int steps, float poisson) {
+    const Body body =
+        lattice({3, 2, 3}, 0.01f, {.youngs_modulus = 5000, .poisson = poisson, .density = 1000});
     const double frequency = highest_frequency(body);
-    for (vec3& p : body.positions) p *= vec3(1.02f, 0.99f, 1.01f);
     auto solver = make_exact_solver(body, {.integrator = integrator, .gravity = vec3(0)}, frequency);
+    State stretched = solver->state();
+    for (std::size_t i = 0; i < body.count(); ++i)
+        stretched.positions[i] = dvec3(body.positions[i] * vec3(1.02f, 0.99f, 1.01f));
+    solver->restore(stretched);
     const double step = solver->longest_step();
     const Energy e = energy(body, solver->state());
     const double first = e.kinetic + e.elastic;

@@ -18,15 +18,21 @@ struct Damping {
 inline constexpr Damping dampings[] = {
     {"none", 0, 0}, {"of velocities", 4, 0}, {"along the springs", 0, 4e-4f}};
 
+/// A body to study, with that damping.
+using Studied = Body(const Damping&);
 /// 9 coupled nodes in a row, of unlike masses, the first of them held.
-Body chain(const Damping& damping);
+Studied chain;
+/// Two cells of tissue in a row, held at one end, which swing as fast as the chain.
+Studied tissue_chain;
+/// A lattice of springs, or of tissue, held at one side.
+Studied small_lattice, small_tissue;
 
-/// The order of convergence that is measured on that chain as it swings: log2 of its error with `steps` steps
+/// The order of convergence that is measured on a chain as it swings: log2 of its error with `steps` steps
 /// over that with 2 · `steps`.
-double order(Integrator integrator, const Damping& damping, int steps);
+double order(Studied body, Integrator integrator, const Damping& damping, int steps);
 
 /// Whether the motion of a slightly shaken lattice grows with a step of `part` times longest_step().
-bool grows(Integrator integrator, const Damping& damping, double part);
+bool grows(Studied body, Integrator integrator, const Damping& damping, double part);
 
 /// The longest stable step of that lattice, s.
 struct Limit {
@@ -50,12 +56,13 @@ double pulse_speed(bool shear);
 /// Timoshenko's beam theory.
 double cantilever_sag(int cells);
 
-/// The least and the largest energy of a lattice in so many undamped steps, over the initial energy.
+/// The least and the largest energy of a lattice in so many undamped steps, over the initial energy; of
+/// tissue where it has a Poisson's ratio.
 struct Swing {
     double least, largest;
     double drift;  // of the mean, from the first tenth to the last
 };
-Swing energy_swing(Integrator integrator, int steps);
+Swing energy_swing(Integrator integrator, int steps, float poisson = 0);
 
 /// The largest angle, in degrees, between normals and those by finite differences of the displaced surface,
 /// within three widths of the middle of one dent, 10 mm wide, on a sphere: by dented_normal(), and by section
