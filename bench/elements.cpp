@@ -74,12 +74,11 @@ std::string set_of(const char* name, const Hexahedra& box, const std::function<b
 
 // U = C10 (I1 / J^(2/3) - 3) + (J - 1)² / D1, with the small-strain moduli of the block.
 std::string material_of(const Block& block) {
-    const double shear = block.youngs_modulus / (2 * (1 + block.poisson)),
-                 bulk = block.youngs_modulus / (3 * (1 - 2 * block.poisson));
+    const Laws laws(block.youngs_modulus, block.poisson);
     return fmt::format(
         "*MATERIAL, NAME=TISSUE\n*HYPERELASTIC, NEO HOOKE\n{:.9g}, {:.9g}\n*DENSITY\n{}\n"
         "*SOLID SECTION, ELSET=BLOCK, MATERIAL=TISSUE\n",
-        shear / 2, 2 / bulk, density);
+        laws.shear / 2, 2 / laws.bulk, density);
 }
 
 constexpr const char* end_of_step = "*NODE PRINT, NSET=ALL, FREQUENCY=1000\nU\n*END STEP\n";
@@ -160,26 +159,29 @@ dvec3 shape_gradient(ivec3 node, dvec3 q) {
     return gradient;
 }
 
-// By 3 × 3 × 3 points in each element.
-double volume_of(const Hexahedra& box, const std::vector<dvec3>& places) {
-    const double away = std::sqrt(0.6), points[] = {-away, 0, away}, weights[] = {5 / 9.0, 8 / 9.0, 5 / 9.0};
-    double volume = 0;
+// Of what depends on the deformation gradient, by the 2 × 2 × 2 points at which a C3D20R knows it.
+template <class Density>
+double integral(const Hexahedra& box, const std::vector<dvec3>& places, Density density_of) {
+    const double point = 1 / std::sqrt(3.0);
+    const dvec3 edges = box.size / dvec3(box.elements);
+    double sum = 0;
     box.for_each_element([&](ivec3 first) {
-        for (int p = 0; p < 27; ++p) {
-            const ivec3 k(p % 3, p / 3 % 3, p / 9);
-            dmat3 edges(0);
+        for (int p = 0; p < 8; ++p) {
+            const dvec3 at = point * dvec3(p & 1 ? 1 : -1, p & 2 ? 1 : -1, p & 4 ? 1 : -1);
+            dmat3 gradient(0);
             for (ivec3 node : corners_and_edges)
-                edges += glm::outerProduct(places[std::size_t(box.number(first + node))],
-                                           shape_gradient(node, {points[k.x], points[k.y], points[k.z]}));
-            volume += weights[k.x] * weights[k.y] * weights[k.z] * glm::determinant(edges);
+                gradient += glm::outerProduct(places[std::size_t(box.number(first + node))],
+                                              shape_gradient(node, at) * 2.0 / edges);
+            sum += density_of(gradient) / 8;
         }
     });
-    return volume;
+    return sum * edges.x * edges.y * edges.z;
 }
 
 // Over that at rest.
 double volume_ratio(const Hexahedra& box, const std::vector<dvec3>& places) {
-    return volume_of(box, places) / (box.size.x * box.size.y * box.size.z);
+    return integral(box, places, [](const dmat3& f) { return glm::determinant(f); }) /
+           (box.size.x * box.size.y * box.size.z);
 }
 
 }  // namespace
@@ -207,10 +209,14 @@ std::vector<PressedBlock> press_by_elements(const Block& block, Plate plate, std
     const std::string output = solved(input);
     const auto forces = rows_under("total force", output),
                displacements = rows_under("displacements", output);
+    const Laws laws(block.youngs_modulus, block.poisson);
     std::vector<PressedBlock> found;
-    for (std::size_t i = 0; i < depths.size(); ++i)
-        found.push_back({depths[i], -4 * forces.at(i).at(0).at(1),
-                         volume_ratio(quarter, places_in(quarter, displacements.at(i)))});
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        const std::vector<dvec3> places = places_in(quarter, displacements.at(i));
+        found.push_back({depths[i], -4 * forces.at(i).at(0).at(1), volume_ratio(quarter, places),
+                         4 * integral(quarter, places, [&](const dmat3& f) { return laws.calculix(f); }),
+                         4 * integral(quarter, places, [&](const dmat3& f) { return laws.tissue(f); })});
+    }
     return found;
 }
 

@@ -3,7 +3,6 @@
 #include "palpate/base/error.h"
 #include "palpate/body/lattice.h"
 #include "palpate/body/select.h"
-#include "palpate/solver/forces.h"
 #include "palpate/solver/solver.h"
 #include "palpate/solver/stability.h"
 
@@ -274,7 +273,9 @@ std::vector<PressedBlock> press(const Block& block, Plate plate, std::span<const
             solver->step(wave, {.moves = {&down, 1}});
             return force_on(body, top, solver->state().positions);
         });
-        found.push_back({depth, force, volume_ratio(body, solver->state().positions)});
+        const Vectors positions = solver->state().positions;
+        const double energy = Forces(body).energy(positions);
+        found.push_back({depth, force, volume_ratio(body, positions), energy, energy});
     }
     return found;
 }
@@ -296,41 +297,83 @@ BentBeam bend(const Block& of, int cells) {
 
 // ---- the laws alone ----
 
+Laws::Laws(double youngs_modulus, double poisson)
+    : shear(shear_modulus(youngs_modulus, poisson)),
+      bulk(youngs_modulus / (3 * (1 - 2 * poisson))),
+      cell_(lattice(ivec3(2), 1, studies::tissue(youngs_modulus, poisson))) {}
+
+double Laws::tissue(const dmat3& gradient) const {
+    Vectors corners;
+    for (vec3 corner : cell_.positions) corners.push_back(gradient * dvec3(corner));
+    return terms_.energy(corners);
+}
+
+double Laws::calculix(const dmat3& gradient) const {
+    const double j = glm::determinant(gradient);
+    const double square = glm::dot(gradient[0], gradient[0]) + glm::dot(gradient[1], gradient[1]) +
+                          glm::dot(gradient[2], gradient[2]);
+    return shear / 2 * (square * std::pow(j, -2 / 3.0) - 3) + bulk / 2 * (j - 1) * (j - 1);
+}
+
 namespace {
 
-// The energy of a unit cube stretched along one axis and across.
-using Law = std::function<double(double along, double across)>;
+using Law = std::function<double(const dmat3& gradient)>;
 
-// The stress in a bar with free sides: across it the energy is least.
-double stress_in_a_bar(const Law& law, double along) {
+dmat3 stretched(double along, double across) { return {along, 0, 0, 0, across, 0, 0, 0, across}; }
+
+// How wide a bar gets whose sides are free: so that its energy is least.
+double width_of_a_bar(const Law& law, double along) {
     double low = 0.8, high = 2;
     while (high - low > 1e-6) {
         const double third = (high - low) / 3;
-        if (law(along, low + third) < law(along, high - third))
+        if (law(stretched(along, low + third)) < law(stretched(along, high - third)))
             high -= third;
         else
             low += third;
     }
-    const double small = 1e-4;
-    return (law(along + small, low) - law(along - small, low)) / (2 * small);
+    return low;
+}
+
+double stress_in_a_bar(const Law& law, double along) {
+    const double across = width_of_a_bar(law, along), small = 1e-4;
+    return (law(stretched(along + small, across)) - law(stretched(along - small, across))) / (2 * small);
 }
 
 }  // namespace
 
 double bar_over_calculix(double poisson, double shortening) {
-    const double shear = shear_modulus(1, poisson), bulk = 1 / (3 * (1 - 2 * poisson));
-    const Body cell = lattice(ivec3(2), 1, tissue(1, poisson));
-    const Forces terms(cell);
-    const Law ours = [&](double along, double across) {
-        Vectors corners;
-        for (ivec3 at : cell.at) corners.push_back(dvec3(at) * dvec3(along, across, across));
-        return terms.energy(corners);
+    const Laws laws(1, poisson);
+    return stress_in_a_bar([&](const dmat3& f) { return laws.tissue(f); }, 1 - shortening) /
+           stress_in_a_bar([&](const dmat3& f) { return laws.calculix(f); }, 1 - shortening);
+}
+
+double frequency_when_pressed(double poisson, double shortening) {
+    const Laws laws(2000, poisson);
+    const dmat3 press = stretched(
+        1 - shortening, width_of_a_bar([&](const dmat3& f) { return laws.tissue(f); }, 1 - shortening));
+    const Body body = lattice(ivec3(9), 0.01f, tissue(2000, poisson));
+    const Forces terms(body);
+    Vectors pressed, way, ahead(body.count()), behind(body.count());
+    for (std::size_t i = 0; i < body.count(); ++i) {
+        pressed.push_back(press * dvec3(body.positions[i]));
+        way.push_back({std::sin(7.0 * double(i)), std::cos(5.0 * double(i)), std::sin(3.0 * double(i))});
+    }
+    auto forces_beside = [&](double by, Vectors& forces) {
+        Vectors places = pressed;
+        for (std::size_t i = 0; i < places.size(); ++i) places[i] += by * way[i];
+        terms.at(places, forces);
     };
-    const Law theirs = [&](double along, double across) {
-        const double j = along * across * across, square = along * along + 2 * across * across;
-        return shear / 2 * (square * std::pow(j, -2 / 3.0) - 3) + bulk / 2 * (j - 1) * (j - 1);
-    };
-    return stress_in_a_bar(ours, 1 - shortening) / stress_in_a_bar(theirs, 1 - shortening);
+    double square = 0;  // by power iteration on the derivative of the accelerations
+    for (int round = 0; round < 300; ++round) {
+        const double size = std::sqrt(dot(way, way)), small = 1e-6 / size;
+        forces_beside(small, ahead);
+        forces_beside(-small, behind);
+        for (std::size_t i = 0; i < way.size(); ++i)
+            way[i] = double(body.inverse_mass[i]) / (2 * small) * (behind[i] - ahead[i]);
+        square = std::sqrt(dot(way, way)) / size;
+        for (dvec3& w : way) w /= square * size;
+    }
+    return std::sqrt(square) / highest_frequency(body);
 }
 
 }  // namespace palpate::studies

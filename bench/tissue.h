@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/body/body.h"
+#include "palpate/solver/forces.h"
 
 #include <span>
 #include <vector>
@@ -63,9 +64,11 @@ enum class Plate { flat, dished };
 dvec3 pressed_to(const Block& block, Plate plate, double depth, dvec3 place);
 
 struct PressedBlock {
-    double depth;   // of the height
-    double force;   // N
-    double volume;  // over that at rest
+    double depth;           // of the height
+    double force;           // N
+    double volume;          // over that at rest
+    double energy;          // J
+    double energy_by_ours;  // J, that the tissue's law gives these displacements
 };
 /// At each depth in turn; `cells`: along the height.
 std::vector<PressedBlock> press(const Block& block, Plate plate, std::span<const double> depths, int cells);
@@ -85,8 +88,26 @@ std::vector<PressedBlock> press_by_elements(const Block& block, Plate plate, std
 BentBeam bend_by_elements(const Block& beam, int elements);
 
 /// CalculiX's neo-Hookean law is another one than ours, with the same moduli where deformations are small.
-/// This is the stress in a bar that is pressed together by a part of its length, with free sides, over that
-/// by theirs.
+/// Both give the energy of a deformation gradient, over the volume at rest, Pa.
+class Laws {
+ public:
+    Laws(double youngs_modulus, double poisson);
+    double tissue(const dmat3& gradient) const;
+    double calculix(const dmat3& gradient) const;
+
+    double shear, bulk;  // moduli, Pa
+
+ private:
+    Body cell_;  // one cell of 1 m
+    Forces terms_{cell_};
+};
+
+/// The stress in a bar of tissue that is pressed together by a part of its length, with free sides, over that
+/// by CalculiX's law.
 double bar_over_calculix(double poisson, double shortening);
+
+/// The highest frequency of tissue that is pressed together like that bar, over that at rest, by which steps
+/// are chosen.
+double frequency_when_pressed(double poisson, double shortening);
 
 }  // namespace palpate::studies

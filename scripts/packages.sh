@@ -15,8 +15,8 @@ build_packages=(
 data_packages=(mricron-data)  # the brain and the head
 film_packages=(ffmpeg)
 fuzz_packages=(clang libclang-rt-14-dev)           # scripts/fuzz
-check_packages=(  # tests; API pages; test meshes and an independent writer of volumes; a comparison for palpate bench; a virtual display and its input
-    libgtest-dev doxygen assimp-testmodels libinsighttoolkit5-dev libbullet-dev xvfb libxtst-dev
+check_packages=(  # tests; API pages; test meshes and an independent writer of volumes; comparisons for palpate bench; a virtual display and its input
+    libgtest-dev doxygen assimp-testmodels libinsighttoolkit5-dev libbullet-dev calculix-ccx xvfb libxtst-dev
 )
 fresh_packages=(debootstrap git)                   # scripts/fresh
 

@@ -23,11 +23,14 @@ const std::string sags = "A cantilever's sag under its own weight over Timoshenk
                   volumes = "A block of Poisson's ratio 0.49 from whose height a ball presses away a third",
                   laws =
                       "The laws alone: the stress in a bar that is pressed, its sides free, over CalculiX's",
+                  frequencies =
+                      "The highest frequency of tissue that is pressed like that bar, over that at rest",
                   beams = "A beam that bends far under its own weight";
 
 constexpr Plate plates[] = {Plate::flat, Plate::dished};
 constexpr double ratios[] = {0.45, 0.49};
 constexpr double depths[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3};
+constexpr double shortenings[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5};
 
 // What a block is computed by, and how many cells or elements it is high.
 struct Method {
@@ -48,7 +51,8 @@ const char* name_of(Plate plate) { return plate == Plate::flat ? "flat" : "dishe
 std::string percent(double part) { return fmt::format("{:.0f} %", 100 * part); }
 
 std::string press_table(Plate plate, double poisson) {
-    return fmt::format("A block under a {} plate, {}", name_of(plate), ratio_of(poisson));
+    return fmt::format("A block under a {} plate, {}; volume and energy at the last", name_of(plate),
+                       ratio_of(poisson));
 }
 
 // All that is measured, by the names of cells.
@@ -89,7 +93,9 @@ class Study {
             const std::string table = press_table(plate, poisson);
             for (const PressedBlock& one : pressed)
                 add(table, method.row(), "N at " + percent(one.depth), one.force);
-            add(table, method.row(), "volume at the last", pressed.back().volume);
+            add(table, method.row(), "volume", pressed.back().volume);
+            add(table, method.row(), "energy, mJ", 1e3 * pressed.back().energy);
+            add(table, method.row(), "by the tissue's law", 1e3 * pressed.back().energy_by_ours);
         };
         for (const Method& method : tissue_methods) take(method, press(block, plate, depths, method.count));
         if (has_ccx_)
@@ -108,11 +114,11 @@ class Study {
                 take(method, bend_by_elements(studies::beam, method.count));
     }
 
-    void the_laws() {
+    void bars(const std::string& table, double (*measure)(double poisson, double shortening),
+              std::span<const double> how_much) {
         for (double poisson : ratios)
-            for (double shortening : {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5})
-                add(laws, ratio_of(poisson), "by " + percent(shortening),
-                    bar_over_calculix(poisson, shortening));
+            for (double shortening : how_much)
+                add(table, ratio_of(poisson), "by " + percent(shortening), measure(poisson, shortening));
     }
 
     Timings take() { return std::move(timings_); }
@@ -135,7 +141,8 @@ Timings run(int) {
     for (Plate plate : plates)
         for (double poisson : ratios) study.plate(plate, poisson);
     study.beam();
-    study.the_laws();
+    study.bars(laws, bar_over_calculix, shortenings);
+    study.bars(frequencies, frequency_when_pressed, std::vector{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7});
     return study.take();
 }
 
@@ -198,21 +205,21 @@ std::vector<Panel> curves(const Timings& timings) {
     std::vector<Panel> panels;
     for (double poisson : ratios) {
         Panel& panel = panels.emplace_back(Panel{
-            "depth (% of the height)", fmt::format("force beyond CalculiX's (%), ratio {}", poisson), {}});
-        auto curve = [&](const std::string& name, const auto& ratio_at) {
+            "depth (% of the height)", fmt::format("beyond CalculiX's, ratio {} (%)", poisson), {}});
+        auto curve = [&](const std::string& name, std::span<const double> at, const auto& ratio_at) {
             Curve& drawn = panel.curves.emplace_back(Curve{name, {0}, {0}});
-            for (double depth : depths) {
+            for (double depth : at) {
                 drawn.x.push_back(100 * depth);
                 drawn.y.push_back(100 * (ratio_at(percent(depth)) - 1));
             }
         };
         for (Plate plate : plates) {
             const std::string table = press_table(plate, poisson);
-            if (values.contains(Cell{table, finest_elements.row(), "volume at the last"}.name()))
-                curve(fmt::format("under a {} plate", name_of(plate)),
+            if (values.contains(Cell{table, finest_elements.row(), "volume"}.name()))
+                curve(fmt::format("under a {} plate", name_of(plate)), depths,
                       [&](const std::string& at) { return over_elements(values, table, "N at " + at); });
         }
-        curve("the laws alone, in a bar", [&](const std::string& at) {
+        curve("the laws alone, in a bar", shortenings, [&](const std::string& at) {
             return values.at(Cell{laws, ratio_of(poisson), "by " + at}.name());
         });
     }

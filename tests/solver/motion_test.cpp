@@ -274,19 +274,16 @@ TEST_P(Motion, WhatATipFeelsDoesNotDependOnTheLattice) {
 }
 
 TEST_P(Motion, TheSameRunTwiceGivesTheSameBits) {
-    for (const Material& material : as_springs_and_cells(tissue)) {
-        SCOPED_TRACE(material.poisson);
-        const Body body = lattice(ellipsoid({0.05f, 0.04f, 0.06f}, 30), {.nodes = 900, .material = material});
-        auto end = [&] {
-            auto solver = make_solver(body, simulation());
-            const Press press{{0, 0, 0.065f}, {0, 0, -0.01f}, 0.015f, 300};
-            for (int i = 0; i < 30; ++i) solver->step(1.0 / 60, {.presses = {&press, 1}});
-            return solver->state();
-        };
-        const State a = end(), b = end();
-        EXPECT_EQ(a.positions, b.positions);
-        EXPECT_EQ(a.velocities, b.velocities);
-    }
+    const Body body = lattice(ellipsoid({0.05f, 0.04f, 0.06f}, 30), {.nodes = 900, .material = tissue});
+    auto end = [&] {
+        auto solver = make_solver(body, simulation());
+        const Press press{{0, 0, 0.065f}, {0, 0, -0.01f}, 0.015f, 300};
+        for (int i = 0; i < 30; ++i) solver->step(1.0 / 60, {.presses = {&press, 1}});
+        return solver->state();
+    };
+    const State a = end(), b = end();
+    EXPECT_EQ(a.positions, b.positions);
+    EXPECT_EQ(a.velocities, b.velocities);
 }
 
 // ---- stability ----
