@@ -114,9 +114,10 @@ std::string solved(const std::string& input) {
     return read_text(scratch.path / "block.dat");
 }
 
-// What CalculiX prints under each heading in which these words stand: rows of numbers.
+// What CalculiX prints under each heading in which these words stand, of which there are so many: rows of
+// numbers.
 using Rows = std::vector<std::vector<double>>;
-std::vector<Rows> rows_under(const std::string& words, const std::string& text) {
+std::vector<Rows> rows_under(const std::string& words, const std::string& text, std::size_t headings) {
     std::istringstream lines(text);
     std::vector<Rows> found;
     bool wanted = false;
@@ -130,6 +131,8 @@ std::vector<Rows> rows_under(const std::string& words, const std::string& text) 
         std::vector<double> row(std::istream_iterator<double>(numbers), {});
         if (wanted && !row.empty()) found.back().push_back(std::move(row));
     }
+    if (found.size() != headings || (headings > 0 && found.back().empty()))
+        throw Error("CalculiX has not printed each " + words);
     return found;
 }
 
@@ -207,8 +210,8 @@ std::vector<PressedBlock> press_by_elements(const Block& block, Plate plate, std
         input += "*NODE PRINT, NSET=TOP, FREQUENCY=1000, TOTALS=ONLY\nRF\n" + std::string(end_of_step);
     }
     const std::string output = solved(input);
-    const auto forces = rows_under("total force", output),
-               displacements = rows_under("displacements", output);
+    const auto forces = rows_under("total force", output, depths.size()),
+               displacements = rows_under("displacements", output, depths.size());
     const Laws laws(block.youngs_modulus, block.poisson);
     std::vector<PressedBlock> found;
     for (std::size_t i = 0; i < depths.size(); ++i) {
@@ -233,7 +236,7 @@ BentBeam bend_by_elements(const Block& of, int elements) {
             "BLOCK, GRAV, {:.9g}, 0, -1, 0\n",
             of.gravity) +
         end_of_step;
-    const std::vector<dvec3> places = places_in(half, rows_under("displacements", solved(input)).at(0));
+    const std::vector<dvec3> places = places_in(half, rows_under("displacements", solved(input), 1).at(0));
     return {of.size.y / 2 - places[std::size_t(half.number({last.x, last.y / 2, last.z}))].y,
             volume_ratio(half, places)};
 }

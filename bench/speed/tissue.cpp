@@ -204,8 +204,8 @@ std::vector<Panel> curves(const Timings& timings) {
     const Values values = values_of(timings);
     std::vector<Panel> panels;
     for (double poisson : ratios) {
-        Panel& panel = panels.emplace_back(Panel{
-            "depth (% of the height)", fmt::format("beyond CalculiX's, ratio {} (%)", poisson), {}});
+        Panel& panel = panels.emplace_back(
+            Panel{"depth (% of the height)", fmt::format("beyond CalculiX's, ratio {} (%)", poisson), {}});
         auto curve = [&](const std::string& name, std::span<const double> at, const auto& ratio_at) {
             Curve& drawn = panel.curves.emplace_back(Curve{name, {0}, {0}});
             for (double depth : at) {
