@@ -28,7 +28,7 @@ Body chain(const Damping& damping) {
 }
 
 Body tissue_chain(const Damping& damping) {
-    Body body = lattice({3, 2, 2}, 1, {.youngs_modulus = 1e6f, .poisson = 0.45f, .density = 1000});
+    Body body = lattice({3, 2, 2}, 1, {.youngs_modulus = 1e6f, .density = 1000});
     pin(body, nodes_in(body, {vec3(-1), vec3(0.1f, 2, 2)}));
     body.damping = damping.of_nodes;
     body.link_damping = damping.of_links;
@@ -98,11 +98,11 @@ bool grows(const Body& rest, Integrator integrator, double step) {
 }  // namespace
 
 Body small_lattice(const Damping& damping) {
-    return held_box({.youngs_modulus = 5000, .density = 1000}, damping);
+    return held_box({.youngs_modulus = 5000, .density = 1000, .model = MaterialModel::springs}, damping);
 }
 
 Body small_tissue(const Damping& damping) {
-    return held_box({.youngs_modulus = 2000, .poisson = 0.45f, .density = 1000}, damping);
+    return held_box({.youngs_modulus = 2000, .density = 1000}, damping);
 }
 
 double order(Studied made, Integrator integrator, const Damping& damping, int steps) {
@@ -217,9 +217,8 @@ double cantilever_sag(int cells) {
     return sag / ends / sag_of(gravity);
 }
 
-Swing energy_swing(Integrator integrator, int steps, float poisson) {
-    const Body body =
-        lattice({3, 2, 3}, 0.01f, {.youngs_modulus = 5000, .poisson = poisson, .density = 1000});
+Swing energy_swing(Integrator integrator, int steps, MaterialModel model) {
+    const Body body = lattice({3, 2, 3}, 0.01f, {.youngs_modulus = 5000, .density = 1000, .model = model});
     const double frequency = highest_frequency(body);
     auto solver = make_exact_solver(body, {.integrator = integrator, .gravity = vec3(0)}, frequency);
     State stretched = solver->state();

@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/body/body.h"
+#include "palpate/body/material.h"
 #include "palpate/body/simulation.h"
 
 #include <vector>
@@ -62,7 +63,7 @@ struct Swing {
     double least, largest;
     double drift;  // of the mean, from the first tenth to the last
 };
-Swing energy_swing(Integrator integrator, int steps, float poisson = 0);
+Swing energy_swing(Integrator integrator, int steps, MaterialModel model = MaterialModel::springs);
 
 /// The largest angle, in degrees, between normals and those by finite differences of the displaced surface,
 /// within three widths of the middle of one dent, 10 mm wide, on a sphere: by dented_normal(), and by section

@@ -84,7 +84,7 @@ void energies() {
     for (Integrator integrator :
          {Integrator::semi_implicit_euler, Integrator::verlet, Integrator::verlet_midpoint, Integrator::rk4})
         print(name_of(integrator), energy_swing(integrator, 1'000'000));
-    print("verlet, tissue", energy_swing(Integrator::verlet, 1'000'000, 0.45f));
+    print("verlet, tissue", energy_swing(Integrator::verlet, 1'000'000, MaterialModel::tissue));
 }
 
 void dents() {

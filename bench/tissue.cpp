@@ -112,17 +112,9 @@ namespace {
 
 double shear_speed(const Body& body) { return std::sqrt(double(tissue_of(body)->shear()) / density); }
 
-std::unique_ptr<Solver> weightless(Body body, double damping) {
+std::unique_ptr<Solver> solver_of(Body body, double damping, double gravity = 0) {
     body.damping = float(damping);
-    return make_solver(body, {.shortest_step = 0, .gravity = vec3(0)});
-}
-
-// The same for a body that is deformed far. Cells that are pressed to 0.4 of their height vibrate 1.42 times
-// as fast as at rest, which is all that the automatic step has in reserve.
-std::unique_ptr<Solver> far_from_rest(Body body, double damping, double gravity) {
-    body.damping = float(damping);
-    const double step = 0.8 * automatic_step(Integrator::verlet, highest_frequency(body), damping);
-    return make_solver(body, {.step = step, .shortest_step = 0, .gravity = {0, -float(gravity), 0}});
+    return make_solver(body, {.shortest_step = 0, .gravity = {0, -float(gravity), 0}});
 }
 
 // What is measured again and again until it stays within a fraction.
@@ -194,8 +186,8 @@ std::vector<Indentation> indent(const Indenter& of, std::span<const double> dept
     const double h = 0.001, modulus = 2000, nu = double(of.poisson), radius = of.radius * h,
                  height = of.height * h;
     const Body body = on_the_ground({of.width, of.height, of.width}, float(h), tissue(modulus, nu));
-    const double wave = height / shear_speed(body);   // s, from top to bottom
-    const auto solver = weightless(body, pi / wave);  // critical for the slowest shear wave
+    const double wave = height / shear_speed(body);  // s, from top to bottom
+    const auto solver = solver_of(body, pi / wave);  // critical for the slowest shear wave
     const std::size_t apex = node_at(body, {of.width / 2, of.height, of.width / 2});
     // So stiff that the tip sinks in by hundredths of what it presses, and the step stays about as long.
     const TissueCells& cells = *tissue_of(body);
@@ -218,7 +210,7 @@ UnderABall press_with_a_ball() {
     const float h = 0.005f, radius = 0.03f;
     const ivec3 cells(18, 12, 18);
     const Body body = on_the_ground(cells, h, tissue(2000, 0.49));
-    const auto solver = weightless(body, 20);
+    const auto solver = solver_of(body, 20);
     Press tip{h * vec3(cells) * vec3(0.5f, 1, 0.5f) + vec3(0, radius, 0), vec3(0), radius, 30'000};
     push_down(*solver, tip, 0.022, 1);
     const State state = solver->state();
@@ -262,7 +254,7 @@ std::vector<PressedBlock> press(const Block& block, Plate plate, std::span<const
     pin(body, nodes_below(body, 0, {0, -1, 0}));
     pin(body, top);
     const double wave = block.size.y / shear_speed(body);
-    const auto solver = far_from_rest(body, 2 * pi / wave, block.gravity);
+    const auto solver = solver_of(body, 2 * pi / wave, block.gravity);
     std::vector<PressedBlock> found;
     for (double depth : depths) {
         std::vector<vec3> places;
@@ -287,7 +279,7 @@ BentBeam bend(const Block& of, int cells) {
     // Euler and Bernoulli's, of a beam that is held at one end.
     const double slowest =
         3.516 / (of.size.x * of.size.x) * of.size.y * std::sqrt(of.youngs_modulus / (12 * density));
-    const auto solver = far_from_rest(body, 2 * slowest, of.gravity);
+    const auto solver = solver_of(body, 2 * slowest, of.gravity);
     const double sag = settled(1e-5, [&] {
         solver->step(1 / slowest);
         return double(body.positions[end].y) - solver->state().positions[end].y;

@@ -31,7 +31,8 @@ double LongestStep::find(const ToolStiffness& tools) const {
     const Integrator integrator = simulation_->integrator;
     const double frequency = touched_frequency(*body_, frequency_, tools.contact, tools.pull);
     const double bound = longest_step(integrator, frequency, body_->damping, body_->link_damping),
-                 automatic = automatic_step(integrator, frequency, body_->damping, body_->link_damping);
+                 automatic = automatic_step(integrator, frequency, body_->damping, body_->link_damping,
+                                            frequency_reserve(*body_));
     const std::string where = name_in_errors(*body_);
     if (simulation_->step > bound && !simulation_->force)
         throw Error(fmt::format("a step of {:.4g} s is above {}'s stability bound of {:.4g} s",

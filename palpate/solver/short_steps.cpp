@@ -24,7 +24,8 @@ struct Causes {
 
 double step_of(const Body& body, const Causes& causes) {
     const double touched = touched_frequency(body, causes.frequency, causes.tools.contact, causes.tools.pull);
-    return automatic_step(causes.integrator, touched, causes.damping, causes.link_damping);
+    return automatic_step(causes.integrator, touched, causes.damping, causes.link_damping,
+                          frequency_reserve(body));
 }
 
 template <class T>

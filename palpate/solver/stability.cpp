@@ -96,9 +96,12 @@ double longest_step(Integrator integrator, double frequency, double damping, dou
     return low;
 }
 
-double automatic_step(Integrator integrator, double frequency, double damping, double link_damping) {
+double frequency_reserve(const Body& body) { return tissue_of(body) ? 1.7 : std::numbers::sqrt2; }
+
+double automatic_step(Integrator integrator, double frequency, double damping, double link_damping,
+                      double reserve) {
     return std::min(0.7 * longest_step(integrator, frequency, damping, link_damping),
-                    0.99 * longest_step(integrator, std::sqrt(2.0) * frequency, damping, link_damping));
+                    0.99 * longest_step(integrator, reserve * frequency, damping, link_damping));
 }
 
 }  // namespace palpate
