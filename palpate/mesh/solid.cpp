@@ -18,8 +18,9 @@ namespace {
 constexpr float level_set_band = 3;  // voxels; no distance is larger
 // Half a voxel's diagonal: a surface that passes through a voxel is no farther from its centre.
 constexpr float wall = 0.8660254f;
-// Up to this distance from the surface, distances are exact: far enough to locate the surface between voxels.
-constexpr float exact = 1.75f;
+// Up to this distance from the surface, distances are exact: as far as the voxel behind any wall, which says
+// on which side the wall is.
+constexpr float exact = 1 + wall + 1e-3f;
 constexpr double most_bytes = 2e9;
 
 constexpr int wide = 8;  // voxels, of a block

@@ -42,6 +42,19 @@ TEST(SignedDistance, OfABoxOnTheGrid) {
         << "three voxels off";
 }
 
+// Wherever a wall lies among the voxels, both of its sides are found.
+TEST(SignedDistance, OfPlatesBetweenTheVoxels) {
+    for (int place = 0; place <= 40; ++place) {
+        const float half = 2 + 0.025f * float(place);  // voxels
+        const SignedDistance distance(box(vec3(-8, -half, -8), vec3(8, half, 8)), 1);
+        for (float y = -half - 1.5f; y < half + 1.5f; y += 0.25f)
+            if (std::abs(y) > 1)
+                ASSERT_LE(std::abs(distance.sample({0.3f, y, -0.4f}, 1, ivec3(1))[0] - (std::abs(y) - half)),
+                          1e-4f)
+                    << half << ' ' << y;
+    }
+}
+
 TEST(SignedDistance, InsideDoesNotDependOnHowFacesTurn) {
     const vec3 centre(0);
     EXPECT_LT(SignedDistance(inside_out(sphere(centre, 1, 4)), 0.1f).sample(centre, 1, ivec3(1))[0], 0);
