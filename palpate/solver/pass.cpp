@@ -1,5 +1,6 @@
 #include "palpate/solver/pass.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -12,7 +13,9 @@ struct ShapeFrame {
     mat3 axes = mat3(1);
     int kind = round_box;
     vec4 size = vec4(0);
-    float thickness = 0;
+    float half_thickness = 1e18f;  // m; of what has no other side
+    float reach = 0;               // m, from the origin to its farthest point
+    float skin = 0;                // m, on top of it
 };
 
 // Three axes at right angles, the second of them along y.
@@ -24,36 +27,50 @@ mat3 axes_around(vec3 y) {
 ShapeFrame frame(const Plane& plane) {
     return {plane.normal * plane.offset, axes_around(plane.normal), half_space};
 }
-ShapeFrame frame(const Sphere& sphere) {
-    return {sphere.centre, mat3(1), round_box, vec4(0, 0, 0, sphere.radius)};
+ShapeFrame rounded(vec3 origin, const mat3& axes, vec3 half, float rounding) {
+    return {origin,
+            axes,
+            round_box,
+            vec4(half, rounding),
+            std::min({half.x, half.y, half.z}) + rounding,
+            glm::length(half) + rounding};
 }
+ShapeFrame frame(const Sphere& sphere) { return rounded(sphere.centre, mat3(1), vec3(0), sphere.radius); }
 ShapeFrame frame(const Capsule& capsule) {
     const vec3 along = capsule.to - capsule.from;
     const float length = glm::length(along);
-    return {0.5f * (capsule.from + capsule.to), length > 0 ? axes_around(along / length) : mat3(1), round_box,
-            vec4(0, length / 2, 0, capsule.radius)};
+    return rounded(0.5f * (capsule.from + capsule.to), length > 0 ? axes_around(along / length) : mat3(1),
+                   vec3(0, length / 2, 0), capsule.radius);
 }
 ShapeFrame frame(const Box& box) {
-    return {box.centre, {box.axes[0], box.axes[1], box.axes[2]}, round_box, vec4(box.half, box.rounding)};
+    return rounded(box.centre, {box.axes[0], box.axes[1], box.axes[2]}, box.half, box.rounding);
 }
-ShapeFrame frame(const Polygon& polygon) {
-    return {.kind = palpate::polygon, .thickness = polygon.thickness};
+// A polygon looks at the way of every node anyway.
+ShapeFrame frame(const Polygon& polygon) { return {.kind = palpate::polygon, .skin = polygon.thickness}; }
+// Walls thinner than two spacings a field does not show (scene/thin_walls.h).
+ShapeFrame frame(const DistanceField& f) {
+    const vec3 last = f.origin + f.spacing * vec3(f.dims - 1);
+    return {.kind = field,
+            .half_thickness = f.spacing,
+            .reach = glm::length(glm::max(glm::abs(f.origin), glm::abs(last)))};
 }
-ShapeFrame frame(const DistanceField&) { return {.kind = field}; }
 
-Obstacle obstacle(const Collider& collider, const Motion& motion) {
+// A node that goes less far than half through it in `seconds`, the pass, is nearest to the side it came from.
+Obstacle obstacle(const Collider& collider, const Motion& motion, float seconds) {
     const ShapeFrame shape = std::visit([](const auto& s) { return frame(s); }, collider.shape);
     const vec3 way = motion.rotation * shape.origin, origin = motion.position + way;
     const mat3 axes = motion.rotation * shape.axes;
     auto row = [&](vec3 axis) { return vec4(axis, -glm::dot(axis, origin)); };
     const vec3 velocity = motion.velocity + glm::cross(motion.spin, way);
+    const float own_speed = glm::length(velocity) + glm::length(motion.spin) * shape.reach,
+                clear = std::max(shape.half_thickness + collider.margin - seconds * own_speed, 0.0f);
     return {row(axes[0]),
             row(axes[1]),
             row(axes[2]),
             shape.size,
-            vec4(origin, shape.thickness + collider.margin),
+            vec4(origin, shape.skin + collider.margin),
             vec4(velocity, collider.friction),
-            vec4(motion.spin, 0),
+            vec4(motion.spin, clear),
             ivec4(shape.kind, 0, 0, 0)};
 }
 
@@ -103,7 +120,7 @@ void place_obstacles(Pass& pass, const Simulation& simulation, const Influences&
         Motion motion = influences.colliders.empty() ? Motion{} : influences.colliders[i];
         motion.position = vec3(dvec3(motion.position) - origin.place);
         motion.velocity = vec3(dvec3(motion.velocity) - origin.velocity);
-        pass.obstacle[i] = obstacle(collider, after(motion, float(time)));
+        pass.obstacle[i] = obstacle(collider, after(motion, float(time)), pass.duration);
         ivec4& kind = pass.obstacle[i].kind;
         if (const auto* polygon = std::get_if<Polygon>(&collider.shape)) {
             kind.y = corners;

@@ -20,7 +20,8 @@ Pass make_pass(const Body& body, const Simulation& simulation, const Origin& ori
 /// The tips where they are `time` seconds into the call.
 void place_tips(std::vector<RoundTip>& tips, const Influences& influences, double time);
 
-/// Puts the obstacles where they are `time` seconds into the call, as seen from where the origin is then.
+/// Puts the obstacles where they are `time` seconds into the call, as seen from where the origin is then. The
+/// pass has its duration already.
 void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time,
                      const Origin& origin);
 

@@ -18,7 +18,7 @@ struct Obstacle {
     vec4  size;        // of the box: half its sides, and its rounding; m
     vec4  place;       // its origin in the world; w: how far nodes stay off its surface, m
     vec4  velocity;    // of its origin, m/s; w: friction
-    vec4  spin;        // rad/s, about its origin
+    vec4  spin;        // rad/s, about its origin; w: how far nodes may go before their way is looked at, m
     ivec4 kind;        // one of the above; first corner and number of corners of a polygon; number of a field
 };
 

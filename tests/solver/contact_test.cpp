@@ -5,6 +5,7 @@
 #include "palpate/solver/solver.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
+#include "tests/solver/every_backend.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -215,6 +216,137 @@ TEST(Shapes, CarryWhatLiesOnThem) {
     EXPECT_LE(std::abs(run({plate.shape, 0}, {0.1f, 0, 0}, vec3(0)).positions[0].x - 0.1), 1e-6);
     const dvec3 round = run(plate, vec3(0), {0, 1, 0}).positions[0];
     EXPECT_LE(glm::distance(round, 0.1 * dvec3(std::cos(1.0), 0, -std::sin(1.0))), 2e-3);
+}
+
+// ---- thin and fast ----
+
+// Where a particle is after one step from `from` by `way`, beside a collider that moves.
+dvec3 after_one_step(vec3 from, vec3 way, const Collider& collider, const Motion& motion = {}) {
+    const double step = 1e-3;
+    auto solver = solver_for(particle(from), Integrator::verlet, step, {collider}, vec3(0));
+    State state = solver->state();
+    state.velocities[0] = dvec3(way) / step;
+    solver->restore(state);
+    solver->step(step, {.colliders = {&motion, 1}});
+    return solver->state().positions[0];
+}
+
+class Any {
+ public:
+    explicit Any(unsigned seed) : random_(seed) {}
+    float of(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
+    vec3 vector(float most) { return {of(-most, most), of(-most, most), of(-most, most)}; }
+    mat3 turn() { return turned(of(-180, 180), vector(1) + vec3(0, 0, 1.5f)); }
+
+ private:
+    std::mt19937 random_;
+};
+
+// What flies through a ball in one step is stopped by the plane that touches the ball where its line first
+// meets it; what passes by flies on.
+TEST(Fast, BallsStopWhatMeetsThem) {
+    Any any(11);
+    int met = 0, missed = 0;
+    for (int round = 0; round < 1000; ++round) {
+        const float radius = any.of(0.001f, 0.02f), aside = any.of(0, 3) * radius;
+        const mat3 axes = any.turn();
+        const vec3 centre = any.vector(0.1f), from = centre + axes * vec3(aside, -any.of(0.021f, 0.3f), 0),
+                   way = axes * vec3(0, any.of(0.34f, 0.6f), 0);
+        const dvec3 end = after_one_step(from, way, {Sphere{centre, radius}});
+        if (aside < 0.95f * radius) {
+            ++met;
+            const dvec3 out = glm::normalize(
+                dmat3(axes) * dvec3(aside, -std::sqrt(double(radius) * radius - double(aside) * aside), 0));
+            const dvec3 free = dvec3(from) + dvec3(way);
+            const dvec3 expected = free + out * (radius - glm::dot(free - dvec3(centre), out));
+            ASSERT_LE(glm::distance(end, expected), 1e-4) << radius << ' ' << aside;
+        } else if (aside > radius + 0.02f * glm::length(way)) {
+            ++missed;
+            ASSERT_LE(glm::distance(end, dvec3(from) + dvec3(way)), 1e-6) << radius << ' ' << aside;
+        }
+    }
+    EXPECT_GT(met, 300);
+    EXPECT_GT(missed, 30);
+}
+
+// A plate however thin, however it lies and comes, rounded or not, keeps what it meets on its side of it.
+TEST(Fast, PlatesStopWhatMeetsThem) {
+    Any any(12);
+    for (int round = 0; round < 1000; ++round) {
+        const float half = std::pow(10.0f, any.of(-5, -2.5f)), rounding = round % 2 * any.of(0, half),
+                    margin = round % 3 / 2 * 0.002f, side = round % 5 < 2 ? -1 : 1;
+        const mat3 axes = any.turn();
+        const Collider plate{Box{any.vector(0.1f), {0.5f, half, 0.4f}, {axes[0], axes[1], axes[2]}, rounding},
+                             0, margin};
+        const Box& box = std::get<Box>(plate.shape);
+        const Motion motion =
+            round % 4 ? Motion{.velocity = any.vector(50), .spin = any.vector(5)} : Motion{};
+        const Motion later = after(motion, 1e-3f);
+        // On the plate, from where the node comes to where it would go, and the same in the world.
+        const vec3 before(any.of(-0.2f, 0.2f), side * any.of(half + rounding + margin + 1e-4f, 0.05f),
+                          any.of(-0.2f, 0.2f)),
+            behind(any.of(-0.2f, 0.2f), -side * any.of(0, 0.3f), any.of(-0.2f, 0.2f));
+        const vec3 from = motion.position + motion.rotation * (box.centre + axes * before),
+                   to = later.position + later.rotation * (box.centre + axes * behind);
+        const dvec3 end = after_one_step(from, to - from, plate, motion);
+        const dvec3 local =
+            glm::transpose(dmat3(axes)) *
+            (glm::transpose(dmat3(later.rotation)) * (end - dvec3(later.position)) - dvec3(box.centre));
+        ASSERT_LE(std::abs(local.y * side - (half + rounding + margin)), 2e-5) << round;
+        ASSERT_LE(std::hypot(local.x - behind.x, local.z - behind.z), 2e-2) << round;
+    }
+}
+
+// What passes a plate's rim flies on.
+TEST(Fast, PlatesLetPassWhatMissesThem) {
+    Any any(13);
+    for (int round = 0; round < 300; ++round) {
+        const mat3 axes = any.turn();
+        const float aside = 0.1f + any.of(0.01f, 0.1f);
+        const vec3 from = axes * vec3(aside, any.of(0.01f, 0.1f), any.of(-0.1f, 0.1f)),
+                   way = axes * vec3(any.of(0, 0.1f), -0.3f, any.of(-0.1f, 0.1f));
+        const dvec3 end =
+            after_one_step(from, way, {Box{vec3(0), {0.1f, 1e-4f, 0.1f}, {axes[0], axes[1], axes[2]}}});
+        ASSERT_LE(glm::distance(end, dvec3(from) + dvec3(way)), 1e-6) << round;
+    }
+}
+
+// A field's walls of two spacings and more stop what goes through them in one step.
+TEST(Fast, FieldsStopWhatMeetsThem) {
+    Any any(14);
+    for (int round = 0; round < 30; ++round) {
+        const float half = any.of(0.002f, 0.01f), side = round % 2 ? -1 : 1;
+        const Collider plate{distance_field(box_mesh({0.05f, half, 0.05f}), half / any.of(1, 2.5f))};
+        for (int node = 0; node < 20; ++node) {
+            const vec3 from(any.of(-0.02f, 0.02f), side * any.of(half + 1e-4f, 0.02f), any.of(-0.02f, 0.02f)),
+                to(any.of(-0.02f, 0.02f), -side * any.of(0, 0.02f), any.of(-0.02f, 0.02f));
+            const dvec3 end = after_one_step(from, to - from, plate);
+            ASSERT_LE(std::abs(end.y * side - half), 0.05 * half) << half << ' ' << from.y << ' ' << to.y;
+        }
+    }
+}
+
+// A cube that comes at 20 m/s does not pass a plate of a tenth of a millimetre, on any machine.
+class FastCube : public EveryBackend {};
+INSTANTIATE_TEST_SUITE_P(Every, FastCube, every_backend(), backend_name);
+
+TEST_P(FastCube, StaysOnItsSideOfASheetOfSteel) {
+    const Material material{.youngs_modulus = 3e5f, .density = 1000, .damping = 1, .link_damping = 0.002f};
+    const Body body = lattice({6, 6, 6}, 0.02f, material);
+    for (bool plate_comes : {false, true}) {
+        auto solver = make(body, {.colliders = {{Box{{0, -0.03f, 0}, {1, 0.00005f, 1}}, 0.3f}}});
+        State state = solver->state();
+        if (!plate_comes)
+            for (dvec3& v : state.velocities) v = {1, -20, 0};
+        solver->restore(state);
+        Motion motion{.velocity = {0, plate_comes ? 20.0f : 0.0f, 0}};
+        for (int frame = 0; frame < 4; ++frame) {
+            ASSERT_FALSE(solver->step(1.0 / 60, {.colliders = {&motion, 1}}).diverged);
+            motion = after(motion, 1 / 60.0f);
+            for (dvec3 p : solver->state().positions)
+                ASSERT_GE(p.y, double(motion.position.y) - 0.03 + 0.00004) << frame;
+        }
+    }
 }
 
 // ---- open polygons ----

@@ -182,7 +182,7 @@ class Cpu final : public Machine {
                 kernels_.show(begin, first, end);
                 team_.meet();
             }
-            if (touched) kernels_.find_bounds(begin, first, end);
+            if (touched || !call.simulation.colliders.empty()) kernels_.find_bounds(begin, first, end);
             call.for_each_pass([&](const Pass& pass, const PassPlan& plan) {
                 const Task task{memory_.view(), pass, plan, states, moved, &pushing, ring_of(member)};
                 aim(pushing, mine, pass.time);

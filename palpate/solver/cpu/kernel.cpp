@@ -240,9 +240,10 @@ void pass(const Task& s, int first_block, int end_block, Largest& largest) {
         else
             move<Quiet>(s, quiet_pass, quiet_constants, b);
         if (tools || s.pass.obstacles > 0) {
+            const Bounds before = s.moved[current][b];  // which the last of several passes writes over
             Bounds& moved = s.moved[s.plan.next][b];
             moved = bounds_of(s.states[s.plan.next], block);
-            if (near_obstacles(s, b, moved)) {
+            if (near_obstacles(s, b, before, moved)) {
                 push_out(s, b, was.fields);
                 moved = bounds_of(s.states[s.plan.next], block);
             }

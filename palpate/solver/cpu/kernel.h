@@ -133,10 +133,10 @@ struct Largest {
     float speed = 0, move = 0;  // m²/s², m²
 };
 
-/// Whether a tip or a push, or an obstacle, may touch nodes of a block that have come so far from their
-/// places at rest.
+/// Whether a tip or a push may touch nodes of a block that have come so far from their places at rest;
+/// whether an obstacle may have met them in this pass, on their way from where they were when the step began.
 bool touched(const Task& task, int block, const Bounds& moved);
-bool near_obstacles(const Task& task, int block, const Bounds& moved);
+bool near_obstacles(const Task& task, int block, const Bounds& was, const Bounds& moved);
 
 /// The kernels for this machine's instruction set. Each works on the blocks from one to before another.
 struct Kernels {

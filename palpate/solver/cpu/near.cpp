@@ -44,6 +44,14 @@ bool may_touch(const Bounds& box, const Obstacle& o, const BodyView& body) {
     return true;  // polygons stop what crosses them, however far it has gone
 }
 
+// Where nodes are on their way, as an obstacle sees it: it has moved as well.
+Bounds way_past(const Obstacle& o, const Bounds& before, const Bounds& now, float duration) {
+    const vec3 shift = duration * vec3(o.velocity);
+    const float reach = glm::distance(before.centre(), vec3(o.place)) + glm::length(before.size()),
+                turned = duration * glm::length(vec3(o.spin)) * reach;
+    return {glm::min(now.low, before.low + shift - turned), glm::max(now.high, before.high + shift + turned)};
+}
+
 }  // namespace
 
 bool touched(const Task& task, int block, const Bounds& moved) {
@@ -61,10 +69,12 @@ bool touched(const Task& task, int block, const Bounds& moved) {
     return false;
 }
 
-bool near_obstacles(const Task& task, int block, const Bounds& moved) {
-    const Bounds box = place(task.body, block, moved);
-    for (int o = 0; o < task.pass.obstacles; ++o)
-        if (may_touch(box, task.pass.obstacle[o], task.body)) return true;
+bool near_obstacles(const Task& task, int block, const Bounds& was, const Bounds& moved) {
+    const Bounds before = place(task.body, block, was), now = place(task.body, block, moved);
+    for (int i = 0; i < task.pass.obstacles; ++i) {
+        const Obstacle& o = task.pass.obstacle[i];
+        if (may_touch(way_past(o, before, now, task.pass.duration), o, task.body)) return true;
+    }
     return false;
 }
 
