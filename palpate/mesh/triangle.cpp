@@ -83,7 +83,14 @@ bool are_near(const ThreePoints& a, const ThreePoints& b, double reach) {
     return false;
 }
 
-vec3 nearest_weights(vec3 p, vec3 a, vec3 b, vec3 c) { return nearest(p, a, b, c); }
+// With an angle of less than two degrees at a, floats would take points within the triangle for points beside
+// it.
+vec3 nearest_weights(vec3 p, vec3 a, vec3 b, vec3 c) {
+    const vec3 ab = b - a, ac = c - a;
+    const float bb = glm::dot(ab, ab), bc = glm::dot(ab, ac), cc = glm::dot(ac, ac);
+    const bool is_sliver = bb * cc - bc * bc < 1e-3f * bb * cc;
+    return is_sliver ? vec3(nearest<dvec3>(p, a, b, c)) : nearest(p, a, b, c);
+}
 dvec3 nearest_weights(dvec3 p, dvec3 a, dvec3 b, dvec3 c) { return nearest(p, a, b, c); }
 
 }  // namespace palpate

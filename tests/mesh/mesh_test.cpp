@@ -1,8 +1,13 @@
 #include "palpate/mesh/mesh.h"
 
+#include "palpate/mesh/triangle.h"
 #include "tests/mesh/shapes.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
 
 namespace palpate {
 namespace {
@@ -36,6 +41,27 @@ TEST(Mesh, VolumeFarFromTheOriginLosesNothing) {
 TEST(Mesh, VolumeOfASphere) {
     const double ball = 4.0 / 3 * M_PI * 0.001;
     EXPECT_LE(std::abs(volume(sphere({1, 2, 3}, 0.1f, 6)) / ball - 1), 1e-3);
+}
+
+// Also in single precision, of triangles a thousand times as long as they are wide, whatever corner comes
+// first.
+TEST(Triangle, NearestPointOfASliver) {
+    std::mt19937 random(4);
+    auto any = [&](float low, float high) {
+        return std::uniform_real_distribution<float>(low, high)(random);
+    };
+    for (int round = 0; round < 10'000; ++round) {
+        std::array<vec3, 3> t{vec3(4.5f, 4.5f, 4.5f), vec3(4.5f, any(5, 8), 4.5f),
+                              vec3(4.5f, any(4, 8), any(900, 1300))};
+        std::ranges::rotate(t, t.begin() + round % 3);
+        const vec3 p(any(3, 6), any(4, 8), any(0, 1300));
+        const vec3 one = nearest_weights(p, t[0], t[1], t[2]);
+        const dvec3 exact = nearest_weights(dvec3(p), dvec3(t[0]), dvec3(t[1]), dvec3(t[2]));
+        const double far =
+            glm::distance(dvec3(p), exact.x * dvec3(t[0]) + exact.y * dvec3(t[1]) + exact.z * dvec3(t[2]));
+        ASSERT_LE(std::abs(glm::distance(p, one.x * t[0] + one.y * t[1] + one.z * t[2]) - far), 1e-2)
+            << round;
+    }
 }
 
 TEST(Mesh, NormalsOfASphere) {
