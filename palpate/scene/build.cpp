@@ -542,7 +542,7 @@ namespace {
 
 // ---- colliders ----
 
-constexpr double most_field_points = 3e7;
+constexpr double most_field_points = 3e7, most_points_unasked = 1 << 24;  // 64 MiB
 
 Mesh read_shape(const ColliderRecipe& recipe, const Scene& scene, const std::string& where,
                 std::vector<std::string>& notes) {
@@ -569,14 +569,28 @@ Polygon polygon_of(const Mesh& mesh, float thickness) {
 }
 
 double field_points(vec3 size, float spacing) {
-    const dvec3 points = dvec3(size) / double(spacing) + 7.0;
+    const dvec3 points = glm::ceil(dvec3(size) / double(spacing)) + 7.0;
     return points.x * points.y * points.z;
 }
 
-DistanceField field_of(const Mesh& mesh, float spacing, const std::string& where) {
+// The spacing of a field for which none is given: a 64th of the longest side; finer where its walls need it
+// and memory suffices for that.
+float field_spacing(const Mesh& mesh) {
+    constexpr float good = 4, needed = 2;  // spacings from side to side of a wall
     const vec3 size = bounds(mesh).size();
-    if (!(spacing > 0)) spacing = std::max({size.x, size.y, size.z}) / 64;
-    if (const double points = field_points(size, spacing); !(points <= most_field_points))
+    const float usual = std::max({size.x, size.y, size.z}) / 64, wall = wall_thickness(mesh);
+    float spacing = usual;
+    while (good * spacing > wall) {
+        const float finer = std::max(wall / good, 0.95f * spacing);
+        if (field_points(size, finer) > most_points_unasked) break;
+        spacing = finer;
+    }
+    return needed * spacing > wall ? usual : spacing;
+}
+
+DistanceField field_of(const Mesh& mesh, float spacing, const std::string& where) {
+    if (!(spacing > 0)) spacing = field_spacing(mesh);
+    if (const double points = field_points(bounds(mesh).size(), spacing); !(points <= most_field_points))
         throw Error(fmt::format("a field with a spacing of {} m would need {:.3g} points", spacing, points),
                     where, "use a larger spacing");
     return distance_field(mesh, spacing);

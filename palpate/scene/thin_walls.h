@@ -6,6 +6,11 @@
 
 namespace palpate {
 
+/// How thick the walls of a closed mesh are, m; infinity if it has none. A wall is where the faces on both
+/// sides are parallel, so edges and tips do not count; and a twentieth of the surface is no thicker than
+/// this, so neither do slivers and small parts.
+float wall_thickness(const Mesh& mesh);
+
 /// Walls of a closed mesh that its signed distance field may miss, because no grid point is deep enough
 /// inside them: nodes may pass through them.
 struct ThinWalls {

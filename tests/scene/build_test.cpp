@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <random>
 
 namespace palpate {
 namespace {
@@ -139,22 +140,55 @@ TEST(Build, FilesOfAnotherKindAreNamedWithTheirLineAndWhatToWrite) {
     EXPECT_FALSE(has_note(coarse, "more nodes"));
 }
 
-// A wall of a field that lies between its points is said, with a spacing that sees it; a thick one is not.
-TEST(Build, WallsThinnerThanTheFieldsSpacingAreANote) {
+// The grid of a field is as fine as its walls need and memory allows; where it is not, that is said, with a
+// spacing that sees them.
+TEST(Build, TheWallsOfAFieldDecideItsSpacing) {
     Scratch scratch;
-    write_mesh(block(vec3(-1, -0.03f, -1), vec3(1, 0, 1)), scratch / "table.obj");
-    write_mesh(block(vec3(-1, -0.2f, -1), vec3(1, 0, 1)), scratch / "slab.obj");
-    write_mesh(ellipsoid(vec3(0.05f, 0.04f, 0.03f), 24), scratch / "ball.obj");
-    auto with = [&](const std::string& keys) {
-        return make(cube + "[[collider]]\nfield = { surface = " + keys + " }\n", scratch / ".");
+    auto with = [&](const Mesh& mesh, const std::string& more = "") {
+        write_mesh(mesh, scratch / "obstacle.obj");
+        return make(cube + "[[collider]]\nfield = { surface = \"obstacle.obj\"" + more + " }\n",
+                    scratch / ".");
     };
-    const Models table = with("\"table.obj\"");
-    EXPECT_TRUE(has_note(table, "collider 1: 9")) << table.notes.size();  // more than 90 % of it
-    EXPECT_TRUE(has_note(table, "down to 0.03 m"));
-    EXPECT_TRUE(has_note(table, "use spacing = 0.0075"));
-    EXPECT_TRUE(with("\"table.obj\", spacing = 0.0125").notes.empty());
-    EXPECT_TRUE(with("\"slab.obj\"").notes.empty());
-    EXPECT_TRUE(with("\"ball.obj\"").notes.empty());
+    auto field = [](const Models& made) -> const DistanceField& {
+        return std::get<DistanceField>(made.simulation.colliders[0].shape);
+    };
+    auto plate = [](float thickness) { return block(vec3(-1, -thickness, -1), vec3(1, 0, 1)); };
+    Mesh turned_round = plate(0.03f);
+    for (uvec3& t : turned_round.triangles) std::swap(t.x, t.y);
+    for (const Mesh& table : {plate(0.03f), turned_round}) {
+        const Models made = with(table);
+        EXPECT_TRUE(made.notes.empty());
+        EXPECT_LE(std::abs(field(made).spacing / 0.0075f - 1), 0.01f);
+        const Models coarse = with(table, ", spacing = 0.02");
+        EXPECT_EQ(field(coarse).spacing, 0.02f);
+        EXPECT_TRUE(has_note(coarse, "collider 1: 9"));  // more than 90 % of it
+        EXPECT_TRUE(has_note(coarse, "down to 0.03 m"));
+        EXPECT_TRUE(has_note(coarse, "use spacing = 0.0075"));
+        EXPECT_TRUE(with(table, ", spacing = 0.0125").notes.empty());
+    }
+    // A foil would take ten thousand million points.
+    const Models foil = with(plate(0.0005f));
+    EXPECT_EQ(field(foil).spacing, 2.0f / 64);
+    EXPECT_TRUE(has_note(foil,
+                         "thinner than the 0.0312 m between the points of its field, down to 0.0005 m, so "
+                         "nodes may pass through them; use a box, a polygon or thicker walls"));
+
+    // Edges, tips and what is thick have the usual spacing.
+    const Mesh wedge{
+        {{0, 0, 0}, {1, 0, 0}, {1, 0.4f, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0.4f, 1}},
+        {},
+        {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {0, 5, 2}, {0, 3, 5}}};
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> radius(0.02f, 0.1f);
+    EXPECT_TRUE(with(plate(0.2f)).notes.empty());
+    EXPECT_TRUE(with(ellipsoid({0.05f, 0.04f, 0.03f}, 24)).notes.empty());
+    for (const Mesh& thick :
+         {plate(0.2f), wedge, ellipsoid({radius(random), radius(random), radius(random)}, 24),
+          ellipsoid({radius(random), radius(random), radius(random)}, 24)}) {
+        const Models made = with(thick);
+        const vec3 size = bounds(thick).size();
+        EXPECT_LE(std::abs(field(made).spacing / (std::max({size.x, size.y, size.z}) / 64) - 1), 1e-5f);
+    }
 }
 
 TEST(Build, SpringsOfThreeKindsMakeTheVolumeOf2012) {
