@@ -61,27 +61,79 @@ float fastest(const Path& path, float reach) {
     return speed;
 }
 
-// Tunnelling: a node that moves farther in one step than half an obstacle's thickness can come out on the
-// other side. Planes have no other side, and polygons use continuous collision detection.
-void look_at_thin_obstacles(const Scene& scene, const Models& made, const Report& report,
-                            std::vector<std::string>& notes) {
+// Tunnelling: a field looks eight times ahead on a node's way, three spacings at most (obstacles.inl).
+// Spheres, capsules, boxes and polygons find what meets them however far it goes.
+void look_at_fast_nodes(const Scene& scene, const Models& made, const Report& report,
+                        std::vector<std::string>& notes) {
     for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c) {
         const Collider& collider = made.simulation.colliders[c];
-        if (std::holds_alternative<Plane>(collider.shape) || std::holds_alternative<Polygon>(collider.shape))
-            continue;
-        const vec3 half = half_sides(collider);
-        const double own = fastest(scene.colliders[c].path, half.z);
+        const auto* field = std::get_if<DistanceField>(&collider.shape);
+        if (!field) continue;
+        const float ahead = 8 * 3 * field->spacing;
+        const double own = fastest(scene.colliders[c].path, half_sides(collider).z);
         for (std::size_t m = 0; m < made.models.size(); ++m) {
             const Report::Body& body = report.bodies[m];
             const double way = (body.largest_speed + own) * body.step;
-            if (!(way > half.x)) continue;
-            notes.push_back(fmt::format(
-                "collider {}: it is {:.3g} m thick, and nodes of body {} go up to {:.3g} m/s against "
-                "it, {:.3g} m in a step of {:.3g} s, so they may pass through in one step; make it "
-                "thicker, or use a polygon or a plane",
-                c + 1, 2 * half.x, body.name, body.largest_speed + own, way, body.step));
+            if (!(way > ahead)) continue;
+            notes.push_back(
+                fmt::format("collider {}: nodes of body {} go up to {:.3g} m/s against it, {:.3g} m in a "
+                            "step of {:.3g} s, "
+                            "and its field looks {:.3g} m ahead, so they may pass through in one step; use "
+                            "shorter steps, "
+                            "or a polygon or a plane",
+                            c + 1, body.name, body.largest_speed + own, way, body.step, ahead));
         }
     }
+}
+
+Pose pose_at_start(const Scene& scene, std::size_t collider) {
+    const Path& path = scene.colliders[collider].path;
+    return path.empty() ? Pose{} : pose(path, 0);
+}
+
+// The free nodes of a body at the start, in the frame in which a collider's shape is given.
+std::vector<vec3> seen_from(const Scene& scene, const Models& made, std::size_t collider, std::size_t body) {
+    const Pose at = pose_at_start(scene, collider);
+    const dvec3 origin = dvec3(made.pivots[collider]) + at.place;
+    const Body& nodes = made.models[body].body;
+    std::vector<vec3> seen;
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+        if (nodes.inverse_mass[i] > 0)
+            seen.emplace_back(glm::conjugate(at.turn) * (dvec3(nodes.positions[i]) - origin));
+    return seen;
+}
+
+// The directions in which nodes may come to a collider, in its frame: gravity's, and those of its own path.
+std::vector<vec3> approaches(const Scene& scene, std::size_t collider) {
+    std::vector<vec3> ways{scene.simulation.gravity};
+    const Path& path = scene.colliders[collider].path;
+    for (std::size_t i = 1; i < path.size(); ++i) ways.push_back(path[i - 1].position - path[i].position);
+    const dquat back = glm::conjugate(pose_at_start(scene, collider).turn);
+    for (vec3& way : ways) way = vec3(back * dvec3(way));
+    std::erase_if(ways, [](vec3 way) { return !(glm::length(way) > 0); });
+    return ways;
+}
+
+// A blade is a thin box that is met with its edge first, so that nodes which come along `way` may pass on
+// both sides of it.
+bool is_blade(const Box& box, vec3 way, std::span<const vec3> nodes) {
+    constexpr float along = 0.5f;  // the cosine, of 60 degrees
+    const vec3 half = box.half + box.rounding;
+    const std::size_t thin = half.x <= std::min(half.y, half.z) ? 0 : half.y <= half.z ? 1 : 2;
+    auto across = [&](vec3 v, std::size_t axis) { return glm::dot(v, box.axes[axis]); };
+    std::size_t edge = (thin + 1) % 3, length = (thin + 2) % 3;
+    if (std::abs(across(way, length)) > std::abs(across(way, edge))) std::swap(edge, length);
+    if (std::abs(across(way, thin)) > along * glm::length(way)) return false;
+    const float side = across(way, edge) < 0 ? 1 : -1;
+    bool on_one = false, on_other = false;
+    for (vec3 p : nodes) {
+        p -= box.centre;
+        if (side * across(p, edge) < half[int(edge)] || std::abs(across(p, length)) > half[int(length)])
+            continue;
+        on_one |= across(p, thin) > half[int(thin)];
+        on_other |= across(p, thin) < -half[int(thin)];
+    }
+    return on_one && on_other;
 }
 
 // ---- what bodies do ----
@@ -150,18 +202,11 @@ void look_at_steps(const Scene& scene, const Report& report, std::vector<std::st
 std::size_t held_at_start(const Scene& scene, const Models& made, std::size_t collider, std::size_t body) {
     constexpr float to_speak_of = 0.1f;  // of the spacing: less is pushed out without harm
     const Collider& one = made.simulation.colliders[collider];
-    const Path& path = scene.colliders[collider].path;
-    const Pose at = path.empty() ? Pose{} : pose(path, 0);
-    const dvec3 origin = dvec3(made.pivots[collider]) + at.place;
-    const Body& nodes = made.models[body].body;
-    std::size_t held = 0;
-    for (std::size_t i = 0; i < nodes.count(); ++i) {
-        if (!(nodes.inverse_mass[i] > 0)) continue;
-        const vec3 p(glm::conjugate(at.turn) * (dvec3(nodes.positions[i]) - origin));
-        const float deep = std::visit([&](const auto& shape) { return depth(shape, p); }, one.shape);
-        held += deep + one.margin > to_speak_of * nodes.spacing;
-    }
-    return held;
+    const float little = to_speak_of * made.models[body].body.spacing;
+    return std::size_t(std::ranges::count_if(seen_from(scene, made, collider, body), [&](vec3 p) {
+        return std::visit([&](const auto& shape) { return depth(shape, p); }, one.shape) + one.margin >
+               little;
+    }));
 }
 
 std::string how_to_ask_less(const Scene& scene, const Report& report) {
@@ -223,10 +268,26 @@ void look_at_weight(const Scene& scene, const Models& made, std::size_t m, std::
                         body.name, 100 * stress / stiffness, stress / little, 100 * little));
 }
 
+constexpr float widest_gap = 0.7f;  // of the spacing: half the diagonal of a square of nodes
+
+// How wide an obstacle is where nodes of a body may pass it on both sides, m; 0: nowhere.
+float fine_side(const Scene& scene, const Models& made, std::size_t collider, std::size_t body) {
+    const Collider& one = made.simulation.colliders[collider];
+    const vec3 half = half_sides(one);
+    const Body& nodes = made.models[body].body;
+    if (nodes.count() < 2) return 0;
+    if (half.y < widest_gap * nodes.spacing) return 2 * half.y;  // a ball or a rod
+    const auto* box = std::get_if<Box>(&one.shape);
+    if (!box || !(2 * half.x < nodes.spacing)) return 0;
+    const std::vector<vec3> seen = seen_from(scene, made, collider, body);
+    const bool cuts =
+        std::ranges::any_of(approaches(scene, collider), [&](vec3 way) { return is_blade(*box, way, seen); });
+    return cuts ? 2 * half.x : 0;
+}
+
 }  // namespace
 
 std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
-    constexpr float widest_gap = 0.7f;  // of the spacing: half the diagonal of a square of nodes
     std::vector<std::string> notes = made.notes;
     for (std::size_t m = 0; m < made.models.size(); ++m) {
         const Body& body = made.models[m].body;
@@ -247,12 +308,11 @@ std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
                 notes.push_back(
                     fmt::format("collider {} holds {} of {} nodes of body {} at the start; move one away",
                                 c + 1, held, body.count(), body.name));
-            if (const float across = half_sides(made.simulation.colliders[c]).y;
-                body.count() > 1 && across < widest_gap * body.spacing)
+            if (const float across = fine_side(scene, made, c, m); across > 0)
                 notes.push_back(
                     fmt::format("collider {}: it is {:.3g} m across, and the nodes of body {} are {:.3g} m "
                                 "apart, so it may pass between them; make it larger, or use more nodes",
-                                c + 1, 2 * across, body.name, body.spacing));
+                                c + 1, across, body.name, body.spacing));
         }
     }
     return notes;
@@ -282,7 +342,7 @@ std::vector<std::string> notes_after(const Scene& scene, const Models& made, con
                                 : ""));
     look_for_lost_bodies(scene, made, play, notes);
     look_at_tools(scene, report, notes);
-    look_at_thin_obstacles(scene, made, report, notes);
+    look_at_fast_nodes(scene, made, report, notes);
     look_at_steps(scene, report, notes);
     return notes;
 }

@@ -3,6 +3,7 @@
 
 #include "palpate/base/error.h"
 #include "palpate/base/files.h"
+#include "palpate/files/write.h"
 #include "palpate/run/notes.h"
 #include "palpate/run/tip.h"
 #include "tests/refusal.h"
@@ -10,10 +11,14 @@
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <random>
+#include <sstream>
 
 namespace palpate {
 namespace {
@@ -270,33 +275,105 @@ TEST(Notes, AToolThatTouchesNothing) {
                           "touched nothing"));
 }
 
-// Case 15: a ball or a rod between the nodes, a plate that is thinner than a step.
+// A ball, a rod or the edge of a plate between the nodes.
 TEST(Notes, ObstaclesThatNodesPass) {
     const std::string collider = "[[collider]]\n";
     const Report ball =
         run_for(weak + collider + "sphere = { centre = [0.03, -0.01, 0.03], radius = 0.01 }\n", 1);
     EXPECT_TRUE(
         has_note(ball, "collider 1: it is 0.02 m across, and the nodes of body cube are 0.02 m apart"));
-    EXPECT_TRUE(has_note(
-        run_for(weak + collider + "capsule = { from = [0, 0, 0], to = [1, 0, 0], radius = 0.01 }\n", 1),
-        "0.02 m across"));
-    EXPECT_TRUE(
-        has_note(run_for(weak + collider + "box = { half = [1, 0.01, 0.01] }\n", 1), "0.02 m across"));
+    for (const char* fine :
+         {"capsule = { from = [0, 0, 0], to = [1, 0, 0], radius = 0.01 }\n",
+          "box = { half = [1, 0.01, 0.01] }\n",
+          "box = { centre = [0.03, -0.3, 0.03], size = [0.002, 0.6, 1] }\n",
+          "box = { centre = [0.03, -0.3, 0.03], size = [1, 0.6, 0.002], rotate = [0, 20, 0] }\n",
+          "box = { centre = [0.5, 0.05, 0.03], size = [0.8, 0.5, 0.002] }\npath = [[0, 0, 0, 0], [1, -1, 0, "
+          "0]]\n"})
+        EXPECT_TRUE(has_note(run_for(weak + collider + fine, 1), " m across, and the nodes")) << fine;
     for (const char* wide :
-         {"sphere = { radius = 0.1 }\n", "plane = {}\n", "box = { half = [1, 0.001, 1] }\n"})
+         {"sphere = { radius = 0.1 }\n", "plane = {}\n", "box = { half = [1, 0.001, 1] }\n",
+          "box = { centre = [0.03, -0.3, 0.03], size = [0.021, 0.6, 1] }\n",   // thicker than the nodes are
+                                                                               // apart
+          "box = { centre = [-0.001, 0.3, 0.03], size = [0.002, 0.6, 1] }\n",  // a wall beside the cube
+          "box = { centre = [0.03, 0.6, 0.03], size = [0.002, 0.6, 1] }\n",    // above it
+          "box = { centre = [0.03, -0.3, 0.03], size = [1, 0.002, 1] }\npath = [[0, 0, 0, 0], [1, 0, 1, "
+          "0]]\n"})
         EXPECT_FALSE(has_note(run_for(weak + collider + wide, 1), "across")) << wide;
+}
 
-    // 0.2 mm and 20 mm of steel under a cube that comes with 3 m/s, and a plate of 1 mm that comes with 20
-    // m/s.
-    const std::string fall = weak + "[simulation]\ngravity = [0, -100, 0]\n" + collider;
-    const Report thin = run_for(fall + "box = { centre = [0, -0.4, 0], size = [2, 0.0002, 2] }\n", 6);
-    EXPECT_TRUE(has_note(thin, "collider 1: it is 0.0002 m thick, and nodes of body cube go up to"));
-    EXPECT_FALSE(
-        has_note(run_for(fall + "box = { centre = [0, -0.4, 0], size = [2, 0.02, 2] }\n", 6), "thick"));
-    const std::string swung =
-        weak + collider +
-        "box = { centre = [0, -0.5, 0], size = [2, 0.001, 2] }\npath = [[0, 0, 0, 0], [0.1, 0, 2, 0]]\n";
-    EXPECT_TRUE(has_note(run_for(swung, 2), "0.001 m thick"));
+// What a run leaves of a body's height: that of its lowest and of its highest node.
+std::array<double, 2> heights_after(const std::string& text, int frames, const Scratch& scratch) {
+    RunSettings settings;
+    settings.frames = frames;
+    settings.nodes = scratch / "nodes.csv";
+    const Report report = run(parse_scene(text, "test.toml", scratch / "."), settings);
+    EXPECT_FALSE(has_note(report, "may pass")) << text;
+    std::array<double, 2> heights{1e9, -1e9};
+    std::istringstream rows(read_text(settings.nodes));
+    std::string row;
+    std::getline(rows, row);
+    while (std::getline(rows, row)) {
+        double x = 0, y = 0;
+        int id = 0;
+        EXPECT_EQ(std::sscanf(row.c_str(), "cube,%d,%lf,%lf", &id, &x, &y), 3) << row;
+        heights = {std::min(heights[0], y), std::max(heights[1], y)};
+    }
+    return heights;
+}
+
+// Plates of a few tenths of a millimetre, and a cube that comes with 4 m/s, or a plate that comes with 20
+// m/s.
+TEST(Obstacles, HoweverThinTheyStopWhatTheyMeet) {
+    Scratch scratch;
+    std::mt19937 random(15);
+    for (int round = 0; round < 4; ++round) {
+        const double thick = std::pow(10.0, std::uniform_real_distribution(-4.5, -3.0)(random)),
+                     top = -0.05 * round;
+        const std::string box = fmt::format(
+            "[[collider]]\nbox = {{ centre = [0, {}, 0], size = [2, {}, 2] }}\n", top - thick / 2, thick);
+        const std::string fall = weak + "[simulation]\ngravity = [0, -100, 0]\n" + box;
+        const auto [low, high] = heights_after(fall, 20, scratch);
+        EXPECT_LE(std::abs(low - top), 1e-3) << thick;
+        EXPECT_LE(high, top + 0.1) << thick;
+        const auto swung = heights_after(weak + box + "path = [[0, 0, 0, 0], [0.1, 0, 2, 0]]\n", 6, scratch);
+        EXPECT_GE(swung[0], top + 2 - 1e-3) << thick;
+    }
+}
+
+// The walls of a field decide how fine its grid is: a cube lies on a table and on a plate of whatever
+// thickness.
+TEST(Obstacles, FieldsOfThinWallsCarry) {
+    Scratch scratch;
+    std::mt19937 random(8);
+    std::string on_top = weak;
+    on_top.replace(on_top.find("move"), std::string::npos, "move = [-0.03, 0.05, -0.03]\n");
+    const double any = std::uniform_real_distribution(0.01, 0.06)(random);
+    for (const auto& [side, thick] : {std::pair(2.0, 0.03), {0.3, 0.003}, {0.6, 0.6 * any}, {2.0, 0.04}}) {
+        write_mesh(block(vec3(-side / 2, -thick, -side / 2), vec3(side / 2, 0, side / 2)),
+                   scratch / "plate.obj");
+        const auto [low, high] =
+            heights_after(on_top + "[[collider]]\nfield = { surface = \"plate.obj\" }\n", 40, scratch);
+        EXPECT_LE(std::abs(low), 1e-3) << side << ' ' << thick;
+        EXPECT_LE(std::abs(high - 0.06), 1e-3) << side << ' ' << thick;
+    }
+}
+
+// A field looks only so far ahead.
+TEST(Notes, FieldsThatNodesPassInOneStep) {
+    Scratch scratch;
+    write_mesh(ellipsoid(vec3(0.03f), 16), scratch / "ball.obj");
+    auto swung = [&](const std::string& to) {
+        RunSettings settings;
+        settings.frames = 2;
+        return run(
+            parse_scene(
+                weak + "[[collider]]\nfield = { surface = \"ball.obj\" }\npath = [[0, 0, -1, 0], [1, 0, " +
+                    to + ", 0]]\n",
+                "test.toml", scratch / "."),
+            settings);
+    };
+    EXPECT_TRUE(has_note(swung("300"), "and its field looks 0.0225 m ahead"));
+    EXPECT_FALSE(has_note(swung("30"), "ahead"));
 }
 
 TEST(Notes, BodiesThatAreGone) {
