@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace palpate {
 namespace {
@@ -77,10 +78,8 @@ void look_at_fast_nodes(const Scene& scene, const Models& made, const Report& re
             if (!(way > ahead)) continue;
             notes.push_back(
                 fmt::format("collider {}: nodes of body {} go up to {:.3g} m/s against it, {:.3g} m in a "
-                            "step of {:.3g} s, "
-                            "and its field looks {:.3g} m ahead, so they may pass through in one step; use "
-                            "shorter steps, "
-                            "or a polygon or a plane",
+                            "step of {:.3g} s, and its field looks {:.3g} m ahead, so they may pass through "
+                            "in one step; use shorter steps, or a polygon or a plane",
                             c + 1, body.name, body.largest_speed + own, way, body.step, ahead));
         }
     }

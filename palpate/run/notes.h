@@ -12,8 +12,8 @@ namespace palpate {
 /// much; bodies inside a collider; tips and obstacles so small that they fit between the nodes.
 std::vector<std::string> notes_before(const Scene& scene, const Models& made);
 
-/// After it: inverted cells, bodies that flew away, tools that touched nothing, obstacles so thin that nodes
-/// may have tunnelled through them, and steps of another length than requested.
+/// After it: inverted cells, bodies that flew away, tools that touched nothing, nodes so fast that they may
+/// have tunnelled through a field, and steps of another length than requested.
 std::vector<std::string> notes_after(const Scene& scene, const Models& made, const Report& report,
                                      const Play& play);
 

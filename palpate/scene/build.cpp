@@ -573,12 +573,14 @@ double field_points(vec3 size, float spacing) {
     return points.x * points.y * points.z;
 }
 
-// The spacing of a field for which none is given: a 64th of the longest side; finer where its walls need it
-// and memory suffices for that.
+// The spacing of a field for which none is given: a 64th of the longest side; finer where the walls of a
+// closed mesh need it and memory suffices for that.
 float field_spacing(const Mesh& mesh) {
     constexpr float good = 4, needed = 2;  // spacings from side to side of a wall
     const vec3 size = bounds(mesh).size();
-    const float usual = std::max({size.x, size.y, size.z}) / 64, wall = wall_thickness(mesh);
+    const float usual = std::max({size.x, size.y, size.z}) / 64;
+    if (soundness(mesh).open_edges > 0) return usual;
+    const float wall = wall_thickness(mesh);
     float spacing = usual;
     while (good * spacing > wall) {
         const float finer = std::max(wall / good, 0.95f * spacing);
@@ -589,6 +591,7 @@ float field_spacing(const Mesh& mesh) {
 }
 
 DistanceField field_of(const Mesh& mesh, float spacing, const std::string& where) {
+    if (mesh.triangles.empty()) throw Error("a surface that encloses nothing", where, "name a closed mesh");
     if (!(spacing > 0)) spacing = field_spacing(mesh);
     if (const double points = field_points(bounds(mesh).size(), spacing); !(points <= most_field_points))
         throw Error(fmt::format("a field with a spacing of {} m would need {:.3g} points", spacing, points),
@@ -643,8 +646,8 @@ void add_collider(const ColliderRecipe& recipe, const Scene& scene, Models& resu
             if (const auto thin = thin_walls(mesh, field)) {
                 const bool fits = field_points(bounds(mesh).size(), thin->spacing) <= most_field_points;
                 result.notes.push_back(fmt::format(
-                    "{}: {:.0f} % of its walls are thinner than the {:.3g} m between the points of its "
-                    "field, down to {:.3g} m, so nodes may pass through them; {}",
+                    "{}: {:.0f} % of its walls are thinner than twice the {:.3g} m between the points of its "
+                    "field, down to {:.3g} m, so nodes may sink in or pass through; {}",
                     where, 100 * thin->share, field.spacing, thin->thinnest,
                     fits ? fmt::format("use spacing = {:.2g}", thin->spacing)
                          : "use a box, a polygon or thicker walls"));

@@ -178,7 +178,7 @@ void read_fields(Reader& read, BodyRecipe& body) {
 
 // ---- colliders ----
 
-const NumberRange extent = above_zero("m").usual(1e-5, 100);
+const NumberRange extent = above_zero("m").usual(1e-5, 100), side_length = zero_or_more("m").usual(1e-6, 1e4);
 
 void read_shape(Reader& read, Plane& plane) {
     read("normal", plane.normal);
@@ -199,8 +199,8 @@ void read_shape(Reader& read, Capsule& capsule) {
 void read_shape(Reader& read, Box& box) {
     vec3 size(0), rotate(0);
     read("centre", box.centre, position);
-    read("half", box.half, zero_or_more("m"));
-    read("size", size, zero_or_more("m"));
+    read("half", box.half, side_length);
+    read("size", size, side_length);
     read("rotate", rotate);
     read("rounding", box.rounding, zero_or_more("m"));
     if (read.has("half") == read.has("size"))

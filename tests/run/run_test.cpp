@@ -307,7 +307,7 @@ std::array<double, 2> heights_after(const std::string& text, int frames, const S
     settings.frames = frames;
     settings.nodes = scratch / "nodes.csv";
     const Report report = run(parse_scene(text, "test.toml", scratch / "."), settings);
-    EXPECT_FALSE(has_note(report, "may pass")) << text;
+    EXPECT_FALSE(has_note(report, "pass through")) << text;
     std::array<double, 2> heights{1e9, -1e9};
     std::istringstream rows(read_text(settings.nodes));
     std::string row;

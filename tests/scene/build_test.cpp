@@ -169,9 +169,9 @@ TEST(Build, TheWallsOfAFieldDecideItsSpacing) {
     // A foil would take ten thousand million points.
     const Models foil = with(plate(0.0005f));
     EXPECT_EQ(field(foil).spacing, 2.0f / 64);
-    EXPECT_TRUE(has_note(foil,
-                         "thinner than the 0.0312 m between the points of its field, down to 0.0005 m, so "
-                         "nodes may pass through them; use a box, a polygon or thicker walls"));
+    EXPECT_TRUE(
+        has_note(foil, "thinner than twice the 0.0312 m between the points of its field, down to 0.0005 m"));
+    EXPECT_TRUE(has_note(foil, "use a box, a polygon or thicker walls"));
 
     // Edges, tips and what is thick have the usual spacing.
     const Mesh wedge{
