@@ -372,7 +372,7 @@ TEST(Notes, FieldsThatNodesPassInOneStep) {
                 "test.toml", scratch / "."),
             settings);
     };
-    EXPECT_TRUE(has_note(swung("300"), "and its field looks 0.0225 m ahead"));
+    EXPECT_TRUE(has_note(swung("1500"), "and its field looks 0.0225 m ahead"));
     EXPECT_FALSE(has_note(swung("30"), "ahead"));
 }
 

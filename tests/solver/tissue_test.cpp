@@ -378,6 +378,38 @@ TEST(Tissue, KeepsItsVolumeUnderAPress) {
     EXPECT_EQ(block.inside_out, 0u);
 }
 
+// Nothing pumps a motion, however far the body is stretched: about the state in which a damped one rests, an
+// undamped one has as much energy after three seconds as before.
+TEST(Tissue, MotionDoesNotGrowWhereItIsStretched) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> part(-1e-4, 1e-4);
+    for (const float poisson : {0.3f, 0.45f, 0.49f})
+        for (const double stretch : {1.2, 1.5, 2.0}) {
+            Material material = of_tissue;
+            material.poisson = poisson;
+            Body body = lattice({4, 5, 9}, 0.01f, material);
+            for (std::size_t i = 0; i < body.count(); ++i)
+                if (body.at[i].z % 8 == 0) body.inverse_mass[i] = 0;
+            Places stretched = places(body);
+            for (std::size_t i = 0; i < body.count(); ++i) {
+                stretched[i].z *= stretch;
+                if (body.inverse_mass[i] > 0) stretched[i] += dvec3(part(random), part(random), part(random));
+            }
+            auto energies = [&](float damping) {
+                body.damping = damping;
+                auto solver = make_solver(body, {.gravity = vec3(0)});
+                solver->restore({stretched, Places(body.count(), dvec3(0)), 0});
+                const Energy before = energy(body, solver->state());
+                for (int call = 0; call < 30; ++call) solver->step(0.1);
+                const Energy after = energy(body, solver->state());
+                return std::pair(before.elastic, after.kinetic + after.elastic);
+            };
+            const double rest = energies(20).second;
+            const auto [before, after] = energies(0);
+            EXPECT_LE(after - rest, 1.1 * (before - rest)) << poisson << ", " << stretch;
+        }
+}
+
 // A ball that has sunk in deeper than its radius still feels the tissue, and about as much in finer cells.
 TEST(Tissue, HoldsATipThatIsDeep) {
     std::vector<double> forces;
