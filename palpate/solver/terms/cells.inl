@@ -17,28 +17,62 @@ struct Eight {
     Real3 c[8];
 };
 
-// Sums and differences along the three axes. 1, 2 and 4 are four times the mean edges; 3, 5, 6 and 7 the hourglasses.
-FN Eight modes(Eight e) {
+// One component of eight vectors. One is worked out after the other, since eight numbers fit into sixteen registers.
+struct EightReals {
+    Real c[8];
+};
+
+FN EightReals x_of(Eight e) {
+    EightReals x;
+    UNROLL for (int k = 0; k < 8; ++k) x.c[k] = e.c[k].x;
+    return x;
+}
+FN EightReals y_of(Eight e) {
+    EightReals y;
+    UNROLL for (int k = 0; k < 8; ++k) y.c[k] = e.c[k].y;
+    return y;
+}
+FN EightReals z_of(Eight e) {
+    EightReals z;
+    UNROLL for (int k = 0; k < 8; ++k) z.c[k] = e.c[k].z;
+    return z;
+}
+FN Eight vectors(EightReals x, EightReals y, EightReals z) {
+    Eight e;
+    UNROLL for (int k = 0; k < 8; ++k) e.c[k] = Real3(x.c[k], y.c[k], z.c[k]);
+    return e;
+}
+
+FN EightReals sums_and_differences(EightReals e) {
     UNROLL for (int axis = 0; axis < 3; ++axis)
         UNROLL for (int k = 0; k < 8; ++k)
             if ((k >> axis & 1) == 0) {
-                Real3 a = e.c[k], b = e.c[k + (1 << axis)];
+                Real a = e.c[k], b = e.c[k + (1 << axis)];
                 e.c[k] = a + b;
                 e.c[k + (1 << axis)] = b - a;
             }
     return e;
 }
 
-// The transpose: what is given by modes, of which the first is 0, on all corners; or on one.
-FN Eight on_corners(Eight e) {
+FN EightReals transposed_sums(EightReals e) {
     UNROLL for (int axis = 0; axis < 3; ++axis)
         UNROLL for (int k = 0; k < 8; ++k)
             if ((k >> axis & 1) == 0) {
-                Real3 a = e.c[k], b = e.c[k + (1 << axis)];
+                Real a = e.c[k], b = e.c[k + (1 << axis)];
                 e.c[k] = a - b;
                 e.c[k + (1 << axis)] = a + b;
             }
     return e;
+}
+
+// Sums and differences along the three axes. 1, 2 and 4 are four times the mean edges; 3, 5, 6 and 7 the hourglasses.
+FN Eight modes(Eight e) {
+    return vectors(sums_and_differences(x_of(e)), sums_and_differences(y_of(e)), sums_and_differences(z_of(e)));
+}
+
+// The transpose: what is given by modes, of which the first is 0, on all corners; or on one.
+FN Eight on_corners(Eight e) {
+    return vectors(transposed_sums(x_of(e)), transposed_sums(y_of(e)), transposed_sums(z_of(e)));
 }
 
 FN Real3 on_corner(Eight e, int k) {
