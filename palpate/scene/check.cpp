@@ -81,6 +81,8 @@ void check_model(const BodyRecipe& body, const Require& require) {
     const bool of_tissue = body.material.model == MaterialModel::tissue;
     require("links", !of_tissue || !require.has("links"), "links of a body of tissue, which has no springs",
             "remove it, or write model = \"springs\"");
+    require(require.has("poisson") ? "poisson" : "model", !of_tissue || !body.is_flat(),
+            "tissue that is one node thick", "use 2 nodes or more along each axis, or make it of springs");
     require("poisson", of_tissue || !require.has("poisson"), "poisson of springs, which have 1/4",
             "remove it, or the model");
 }

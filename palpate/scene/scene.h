@@ -9,6 +9,7 @@
 #include "palpate/scene/camera.h"
 #include "palpate/scene/path.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -129,8 +130,11 @@ struct BodyRecipe {
     /// which it bears its own weight (own_weight.h): three hundredths of strain on Earth, as the scene has
     /// its down.
     bool bears_its_weight() const {
-        return !is_cloth() && !springs && material.youngs_modulus == 0 && material.stiffness == 0;
+        return !is_cloth() && !is_flat() && !springs && material.youngs_modulus == 0 &&
+               material.stiffness == 0;
     }
+    /// Whether it is a box that is one node thick, which has no cells.
+    bool is_flat() const { return dims && std::min({dims->x, dims->y, dims->z}) < 2; }
     bool operator==(const BodyRecipe&) const = default;
 };
 

@@ -246,6 +246,10 @@ TEST(Scene, ASolidIsOfTissueUnlessItsSpringsAreMeant) {
     EXPECT_FALSE(is_tissue(parse(bare + "tissue = \"brain\"\nmodel = \"springs\"\n").bodies[0].material));
     expect_words(refusal(bare + "density = 1\nstiffness = 1\nmodel = \"tissue\"\n"),
                  {"tissue with a stiffness of springs", "line 6"});
+    const std::string flat = "[[body]]\ndims = [4, 5, 1]\nspacing = 0.1\nmass = 1\n";
+    EXPECT_FALSE(parse(flat + "youngs_modulus = 1e4\n").bodies[0].bears_its_weight());
+    expect_words(refusal(flat), {"exactly one of youngs_modulus and stiffness", "none"});
+    expect_words(refusal(flat + "youngs_modulus = 1e4\npoisson = 0.4\n"), {"one node thick", "line 6"});
     expect_words(refusal(small + "model = \"solid\"\n"), {"model", "line 8", "tissue", "springs"});
 }
 
