@@ -124,19 +124,35 @@ Material first_material(const BodyRecipe& recipe) {
     return material;
 }
 
-// The modulus at which its own weight on Earth strains a body by three hundredths, to two digits.
+// The modulus of cells at which a frame takes 800 automatic steps, at most: (12 λ + 8 µ) / (ρ h²) is above
+// the square of every frequency.
+double stiffest_in_time(const Body& body, TissueCells cells) {
+    constexpr double frequency = 1.16 * 800 / frame_seconds;  // automatic_step() takes 1.16 / frequency
+    cells.youngs_modulus = 1;
+    double volume = 0;
+    for (float part : cells.filled) volume += double(part) * std::pow(double(body.spacing), 3);
+    const double of_one = double(12 * cells.lame() + 8 * cells.shear()) * volume /
+                          (mass(body) * body.spacing * body.spacing);  // its frequency squared
+    return frequency * frequency / of_one;
+}
+
+// The modulus at which its own weight on Earth strains a body by three hundredths, to two digits; or more
+// than that, where steps would be too short.
 void stiffen_to_bear(Body& body, const std::string& name, std::span<const int> held, vec3 down,
                      std::vector<std::string>& notes) {
     constexpr double strain = 0.03, earth = 9.81;
-    const double stress = own_weight_stress(body, held, float(earth) * down);
+    const double enough = own_weight_stress(body, held, float(earth) * down) / strain;
     for (Term& term : body.terms)
-        if (auto* cells = std::get_if<TissueCells>(&term); cells && stress > 0) {
-            const double unit = std::pow(10.0, std::floor(std::log10(stress / strain)) - 1);
-            cells->youngs_modulus = float(std::round(stress / strain / unit) * unit);
-            notes.push_back(
-                fmt::format("body {}: it is given a youngs_modulus of {:g} kPa, so that it bears its "
-                            "own weight; say another",
-                            name, cells->youngs_modulus / 1000));
+        if (auto* cells = std::get_if<TissueCells>(&term); cells && enough > 0) {
+            const double wanted = std::min(enough, stiffest_in_time(body, *cells)),
+                         unit = std::pow(10.0, std::floor(std::log10(wanted)) - 1);
+            cells->youngs_modulus = float(std::round(wanted / unit) * unit);
+            notes.push_back(fmt::format(
+                "body {}: it is given a youngs_modulus of {:g} kPa, so that its own weight strains it by "
+                "{:.0f} %{}; "
+                "say another",
+                name, cells->youngs_modulus / 1000, 100 * strain * enough / double(cells->youngs_modulus),
+                wanted < enough ? ", as little as 800 steps a frame allow" : ""));
         }
 }
 
