@@ -57,8 +57,8 @@ double pulse_speed(bool shear);
 /// Timoshenko's beam theory.
 double cantilever_sag(int cells);
 
-/// The least and the largest energy of a lattice in so many undamped steps, over the initial energy; of
-/// tissue where it has a Poisson's ratio.
+/// The least and the largest energy of a lattice of a model in so many undamped steps, over the initial
+/// energy.
 struct Swing {
     double least, largest;
     double drift;  // of the mean, from the first tenth to the last

@@ -45,7 +45,8 @@ Vectors displaced(const Body& body, Vectors displacement, const Vectors& free, c
     along = left;
     const double first = dot(left, left);
     double square = first;
-    while (square > 1e-16 * first) {
+    for (int round = 0; square > 1e-16 * first; ++round) {
+        if (round == 20'000) throw Error("conjugate gradients do not converge");
         terms.stiffness_times(rest, along, stiff);
         const double step = square / dot(along, stiff), before = square;
         for (std::size_t i = 0; i < rest.size(); ++i) {

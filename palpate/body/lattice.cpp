@@ -347,7 +347,7 @@ Body lattice(const Mesh& mesh, const LatticeSettings& settings, const Progress& 
 bool restuff(Body& body, const Material& from, const Material& to, double volume) {
     check_stiffness(to);
     check_mass(to);
-    if (equal_links(from) != equal_links(to) || is_tissue(from) != is_tissue(to)) return false;
+    if (equal_links(from) != equal_links(to) || (tissue_of(body) != nullptr) != is_tissue(to)) return false;
     GridSprings& springs = *body.grid();
     springs.links = isotropic_links(to, body.spacing);
     springs.strength.clear();

@@ -406,12 +406,14 @@ bool Experiment::takes(const Interaction& hands) const {
     for (const Press& press : hands.presses)
         if (!(press.radius > 0 && press.stiffness >= 0 && pressure_per_metre(press) <= most * pressure))
             return false;
+    std::vector<float> strengths;
+    for (const Model& model : models) strengths.push_back(most * strength_for(model.body).pull);
     for (const BodyPush& pull : hands.pulls) {
         if (pull.body >= models.size()) return false;
         const Body& body = models[pull.body].body;
         if (pull.push.node < 0 || std::size_t(pull.push.node) >= body.count()) return false;
         const float added = pull.push.stiffness * body.inverse_mass[std::size_t(pull.push.node)];
-        if (!(added >= 0 && added <= most * strength_for(body).pull)) return false;
+        if (!(added >= 0 && added <= strengths[pull.body])) return false;
     }
     return true;
 }

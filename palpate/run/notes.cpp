@@ -255,7 +255,8 @@ std::vector<int> held_nodes(const Body& body) {
 
 // A body whose own weight is too much for it.
 void look_at_weight(const Scene& scene, const Models& made, std::size_t m, std::vector<std::string>& notes) {
-    constexpr double much = 0.3, little = 0.1;  // strains
+    constexpr double much = 0.3, little = 0.1;                                  // strains
+    if (m < scene.bodies.size() && scene.bodies[m].bears_its_weight()) return;  // build() has said it
     const Body& body = made.models[m].body;
     const double stiffness = modulus(scene, made, m),
                  stress = own_weight_stress(body, held_nodes(body), scene.simulation.gravity);
@@ -333,12 +334,12 @@ std::vector<std::string> notes_after(const Scene& scene, const Models& made, con
     std::vector<std::string> notes;
     for (const Report::Body& body : report.bodies)
         if (body.inverted_cells > 0)
-            notes.push_back(
-                fmt::format("body {}: up to {} of {} cells were inside out; {}, or use more nodes{}",
-                            body.name, body.inverted_cells, body.cells, how_to_ask_less(scene, report),
-                            could_be_tissue(scene, body.name)
-                                ? ", or make it of tissue (model = \"tissue\"): such cells turn back"
-                                : ""));
+            notes.push_back(fmt::format(
+                "body {}: up to {} of {} cells were inside out; {}, or use more nodes{}", body.name,
+                body.inverted_cells, body.cells, how_to_ask_less(scene, report),
+                could_be_tissue(scene, body.name)
+                    ? ", or make it of tissue (model = \"tissue\" and no links): such cells turn back"
+                    : ""));
     look_for_lost_bodies(scene, made, play, notes);
     look_at_tools(scene, report, notes);
     look_at_fast_nodes(scene, made, report, notes);

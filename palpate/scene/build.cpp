@@ -124,10 +124,10 @@ Material first_material(const BodyRecipe& recipe) {
     return material;
 }
 
-// The modulus of cells at which a frame takes 800 automatic steps, at most: (12 λ + 8 µ) / (ρ h²) is above
-// the square of every frequency.
+// The modulus of cells at which a frame takes 500 automatic steps of Verlet, which leaves half of the limit
+// to tools and to harder regions: (12 λ + 8 µ) / (ρ h²) is above the square of every frequency.
 double stiffest_in_time(const Body& body, TissueCells cells) {
-    constexpr double frequency = 1.16 * 800 / frame_seconds;  // automatic_step() takes 1.16 / frequency
+    constexpr double frequency = 1.16 * 500 / frame_seconds;  // automatic_step() takes 1.16 / frequency
     cells.youngs_modulus = 1;
     double volume = 0;
     for (float part : cells.filled) volume += double(part) * std::pow(double(body.spacing), 3);
@@ -136,24 +136,31 @@ double stiffest_in_time(const Body& body, TissueCells cells) {
     return frequency * frequency / of_one;
 }
 
+double to_two_digits(double a) {
+    const double unit = std::pow(10.0, std::floor(std::log10(a)) - 1);
+    return std::round(a / unit) * unit;
+}
+
 // The modulus at which its own weight on Earth strains a body by three hundredths, to two digits; or more
 // than that, where steps would be too short.
 void stiffen_to_bear(Body& body, const std::string& name, std::span<const int> held, vec3 down,
                      std::vector<std::string>& notes) {
     constexpr double strain = 0.03, earth = 9.81;
-    const double enough = own_weight_stress(body, held, float(earth) * down) / strain;
-    for (Term& term : body.terms)
-        if (auto* cells = std::get_if<TissueCells>(&term); cells && enough > 0) {
-            const double wanted = std::min(enough, stiffest_in_time(body, *cells)),
-                         unit = std::pow(10.0, std::floor(std::log10(wanted)) - 1);
-            cells->youngs_modulus = float(std::round(wanted / unit) * unit);
-            notes.push_back(fmt::format(
-                "body {}: it is given a youngs_modulus of {:g} kPa, so that its own weight strains it by "
-                "{:.0f} %{}; "
-                "say another",
-                name, cells->youngs_modulus / 1000, 100 * strain * enough / double(cells->youngs_modulus),
-                wanted < enough ? ", as little as 800 steps a frame allow" : ""));
-        }
+    const double stress = own_weight_stress(body, held, float(earth) * down);
+    for (Term& term : body.terms) {
+        auto* cells = std::get_if<TissueCells>(&term);
+        if (!cells) continue;
+        const double enough = stress > 0 ? stress / strain : cells->youngs_modulus,
+                     allowed = stiffest_in_time(body, *cells);
+        cells->youngs_modulus = float(to_two_digits(std::min(enough, allowed)));
+        const std::string why =
+            stress > 0 ? fmt::format("at which its own weight strains it by {:.0f} %{}",
+                                     100 * stress / double(cells->youngs_modulus),
+                                     enough > allowed ? " (less would take more than 500 steps a frame)" : "")
+                       : "since it is not known what it has to bear";
+        notes.push_back(fmt::format("body {}: it is given youngs_modulus = {:.2g} Pa, {}; say another", name,
+                                    cells->youngs_modulus, why));
+    }
 }
 
 void hold(Body& body, const BodyRecipe& recipe, const Scene& scene, std::vector<std::string>& notes) {

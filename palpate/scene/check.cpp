@@ -63,8 +63,8 @@ void check(const Region& region, const BodyRecipe& body, const SceneSource& sour
     require.one_of({"youngs_modulus", "stiffness", "factor"}, "give it one");
     require("", region.factor > 0 || (!body.springs && !body.is_cloth()),
             "springs of several kinds have neither one modulus nor one stiffness", "give it a factor");
-    require("stiffness", region.stiffness == 0 || !(is_tissue(body.material) || body.bears_its_weight()),
-            "a stiffness in a body of tissue", "give it youngs_modulus or a factor");
+    require("stiffness", region.stiffness == 0 || !body.is_of_tissue(), "a stiffness in a body of tissue",
+            "give it youngs_modulus or a factor");
 }
 
 // A named tissue is made of cells of a solid and has a modulus.
@@ -80,7 +80,7 @@ void check_tissue(const BodyRecipe& body, const Require& require) {
 void check_model(const BodyRecipe& body, const Require& require) {
     const bool of_tissue = body.material.model == MaterialModel::tissue;
     require("links", !of_tissue || !require.has("links"), "links of a body of tissue, which has no springs",
-            "remove it, or write model = \"springs\"");
+            require.has("poisson") ? "remove links or poisson" : "remove it, or write model = \"springs\"");
     require(require.has("poisson") ? "poisson" : "model", !of_tissue || !body.is_flat(),
             "tissue that is one node thick", "use 2 nodes or more along each axis, or make it of springs");
     require("poisson", of_tissue || !require.has("poisson"), "poisson of springs, which have 1/4",

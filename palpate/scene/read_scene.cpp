@@ -427,18 +427,28 @@ std::vector<std::string> target(const Change& change) {
     return split(change.substr(0, change.find('=')), '.');
 }
 
+// Springs take the place of tissue; what a named tissue said of other things stays.
+void leave_tissue(toml::table& table, bool keeps_modulus) {
+    if (const auto* name = table.get_as<std::string>("tissue")) {
+        const Material material = tissue_named(name->get()).material();
+        if (!table.contains("mass")) table.insert("density", double(material.density));
+        table.insert("damping", double(material.damping));
+        if (keeps_modulus) table.insert("youngs_modulus", double(material.youngs_modulus));
+    }
+    for (const char* of_tissue : {"poisson", "tissue", "model"}) table.erase(of_tissue);
+}
+
 // Removes the keys that exclude a changed one; a new tissue removes the numbers given instead of its own.
-void remove_excluded(toml::table& table, const std::string& key) {
+void remove_excluded(toml::table& table, const std::string& key, const toml::node& value) {
     if (key == "tissue")
         for (const char* other : {"youngs_modulus", "poisson", "model", "stiffness", "springs", "links",
                                   "density", "mass", "damping"})
             table.erase(other);
-    for (const char* of_springs : {"stiffness", "springs", "links"})
-        if (key == of_springs)
-            for (const char* of_tissue : {"poisson", "tissue", "model"}) table.erase(of_tissue);
-    if (key == "model" || key == "poisson")
-        for (const char* other : {"model", "poisson", "links"})
-            if (key != other) table.erase(other);
+    if (key == "stiffness" || key == "springs" || key == "links") leave_tissue(table, key == "links");
+    if (key == "poisson") table.erase("model");
+    const bool of_springs = key == "model" && value.value_or(std::string()) == "springs";
+    if (key == "poisson" || (key == "model" && !of_springs)) table.erase("links");
+    if (of_springs) table.erase("poisson");
     const std::vector<std::string_view> choices[] = {{"density", "mass"},
                                                      {"youngs_modulus", "stiffness", "springs", "factor"},
                                                      {"nodes", "spacing"},
@@ -526,7 +536,7 @@ void apply(toml::table& root, const Change& change) {
         for (const char* old :
              {"volume", "surface", "dims", "cloth", "iso", "units", "colour_map", "normal_map", "weave"})
             table->erase(old);
-    remove_excluded(*table, key);
+    remove_excluded(*table, key, *value.get(key));
     table->insert_or_assign(key, *value.get(key));
 }
 

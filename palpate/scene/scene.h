@@ -133,6 +133,10 @@ struct BodyRecipe {
         return !is_cloth() && !is_flat() && !springs && material.youngs_modulus == 0 &&
                material.stiffness == 0;
     }
+    /// Whether it is a solid of cells, and not of springs.
+    bool is_of_tissue() const {
+        return !is_cloth() && !is_flat() && !springs && (is_tissue(material) || bears_its_weight());
+    }
     /// Whether it is a box that is one node thick, which has no cells.
     bool is_flat() const { return dims && std::min({dims->x, dims->y, dims->z}) < 2; }
     bool operator==(const BodyRecipe&) const = default;

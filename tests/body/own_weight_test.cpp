@@ -64,5 +64,23 @@ TEST(OwnWeight, OfWhatStandsAside) {
     expect_within(own_weight_stress(body, feet, gravity), stress, 0.05);
 }
 
+// Held at one end, a beam of length L is bent by 3 density x gravity x L^2 / a, whatever lies across.
+TEST(OwnWeight, OfAShelf) {
+    for (int axis : {0, 2})
+        for (int thick : {4, 7}) {
+            ivec3 dims(thick + 1);
+            dims[axis] = 61;
+            const Body shelf = lattice(dims, h, jelly);
+            std::vector<int> wall;
+            for (std::size_t i = 0; i < shelf.count(); ++i)
+                if (shelf.at[i][axis] == 0) wall.push_back(int(i));
+            const double length = 59.5 * double(h), a = thick * double(h);
+            expect_within(own_weight_stress(shelf, wall, gravity), 3 * density * earth * length * length / a,
+                          0.03);
+            const std::vector<int> corner = {wall[0]};
+            EXPECT_EQ(own_weight_stress(shelf, corner, gravity), 0);
+        }
+}
+
 }  // namespace
 }  // namespace palpate

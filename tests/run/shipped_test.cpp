@@ -137,5 +137,18 @@ TEST(Dropped, ClosedMeshesComeToRest) {
     }
 }
 
+// However small it is made and however slender it is, a frame takes 500 steps at most.
+TEST(Dropped, AFrameTakesFiveHundredStepsAtMost) {
+    Scratch scratch;
+    write_mesh(block(vec3(0), {0.02f, 0.3f, 0.02f}), scratch / "rod.ply");
+    const Prepared prepared =
+        prepare(find_scene((scratch / "rod.ply").string()), {"body.it.nodes=1500", "body.it.size=0.001"});
+    Report report;
+    Play play(prepared.scene, prepared.models, report);
+    ASSERT_TRUE(play.advance(0, frame_seconds));
+    EXPECT_LE(report.bodies[0].steps, 505);  // its modulus has two digits
+    EXPECT_GE(report.bodies[0].steps, 300);
+}
+
 }  // namespace
 }  // namespace palpate

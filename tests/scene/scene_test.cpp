@@ -239,10 +239,20 @@ TEST(Scene, ASolidIsOfTissueUnlessItsSpringsAreMeant) {
     EXPECT_TRUE(is_tissue(material("model = \"springs\"\n", {"body.cube.poisson=0.3"})));
     for (const char* of_springs : {"model = \"springs\"\n", "links = \"cells\"\n", "links = \"equal\"\n"}) {
         EXPECT_FALSE(is_tissue(material(of_springs))) << of_springs;
-        expect_words(refusal(small + of_springs + "poisson = 0.4\n"), {"body cube", "springs", "remove it"});
+        expect_words(refusal(small + of_springs + "poisson = 0.4\n"), {"body cube", "springs", "remove "});
     }
     EXPECT_FALSE(is_tissue(material("poisson = 0.3\n", {"body.cube.model=springs"})));
     EXPECT_FALSE(is_tissue(material("poisson = 0.3\n", {"body.cube.stiffness=3"})));
+    // What a named tissue says of other things stays.
+    const Material brain = tissue_named("brain").material();
+    const std::string named = bare + "tissue = \"brain\"\n";
+    const Material by_stiffness = parse(named, {"body.cube.stiffness=3"}).bodies[0].material;
+    EXPECT_EQ(by_stiffness.density, brain.density);
+    EXPECT_EQ(by_stiffness.damping, brain.damping);
+    const Material linked = parse(named, {"body.cube.links=equal"}).bodies[0].material;
+    EXPECT_EQ(linked.youngs_modulus, brain.youngs_modulus);
+    EXPECT_FALSE(is_tissue(linked));
+    EXPECT_EQ(material("links = \"equal\"\n", {"body.cube.model=springs"}).links, Links::equal);
     EXPECT_FALSE(is_tissue(parse(bare + "tissue = \"brain\"\nmodel = \"springs\"\n").bodies[0].material));
     expect_words(refusal(bare + "density = 1\nstiffness = 1\nmodel = \"tissue\"\n"),
                  {"tissue with a stiffness of springs", "line 6"});
