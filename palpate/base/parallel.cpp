@@ -85,7 +85,7 @@ Processors::~Processors() { shared = before_; }
 void in_parallel(std::size_t count, const std::function<void(std::size_t)>& piece) {
     if (count == 1) return piece(0);
     if (shared) return Sharing(count, piece).share_out();
-    const Processors all(int(std::thread::hardware_concurrency()));
+    const Processors all{int(std::thread::hardware_concurrency())};
     Sharing(count, piece).share_out();
 }
 

@@ -10,7 +10,7 @@ namespace {
 // The dihedral angle of a face about an edge, from an arbitrary fixed direction: -pi to pi.
 class TurnAboutEdge {
  public:
-    explicit TurnAboutEdge(dvec3 axis) : axis_(axis) {
+    explicit TurnAboutEdge(dvec3 axis) {
         const dvec3 a = glm::abs(axis);  // a direction that is not nearly parallel to the axis
         const dvec3 off(a.x <= a.y && a.x <= a.z, a.y < a.x && a.y <= a.z, a.z < a.x && a.z < a.y);
         from_ = glm::cross(off, axis);
@@ -19,7 +19,7 @@ class TurnAboutEdge {
     double operator()(dvec3 way) const { return std::atan2(glm::dot(way, side_), glm::dot(way, from_)); }
 
  private:
-    dvec3 axis_, from_, side_;
+    dvec3 from_, side_;
 };
 
 // Pairs twins at an edge of many sides, sorted by angle. There is matter between a side that runs down and
