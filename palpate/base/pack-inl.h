@@ -32,6 +32,17 @@ struct Pack {
 
 FN bool any_node(Mask m) { return !hn::AllFalse(Lanes(), m); }
 FN size_t lanes() { return hn::Lanes(Lanes()); }
+// Each lane in the next one's place, and the last in the first's.
+FN Pack one_lane_on(Pack a) {
+    const Lanes d;
+    const hn::RebindToSigned<Lanes> whole;
+    const auto from =
+        hn::And(hn::Iota(whole, std::int32_t(lanes()) - 1), hn::Set(whole, std::int32_t(lanes()) - 1));
+    return hn::TableLookupLanes(a.v, hn::IndicesFromVec(d, from));
+}
+FN Pack first_lane_of(Pack first, Pack others) {
+    return hn::IfThenElse(hn::FirstN(Lanes(), 1), first.v, others.v);
+}
 FN Pack load(const float* from) { return hn::LoadU(Lanes(), from); }
 FN void store(Pack a, float* to) { hn::StoreU(a.v, Lanes(), to); }
 

@@ -19,7 +19,8 @@
 //   hinge_toward(p, h, n), hinge_passing(v, h, n)   as toward and passing, for the three others: OwnHinge says which
 //   hinge_stiffness(h), hinge_rest(h), hinge_area_square(h)   as an OwnHinge says
 //   cell_weight(k)     of the cell of which this node is corner k, 0 where there is none
-//   cell_corner(p, k, c), cell_corner_passing(v, k, c)   as toward and passing, for its corner c
+//   cell_corner(k, c), cell_corner_velocity(k, c)   of its corner c: position, as a Node's, and velocity
+//   cell_axis(axis)    where positions count from places at rest: the direction of its edges at rest; else 0
 //   origin()           what this node's position counts from: the world's, or its own place at rest, m
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
 //   tip(i)             the RoundTip i
@@ -28,7 +29,7 @@
 //   distance_at(i, p), uphill_at(i, p)   field i at p: the distance, m, and which way it grows
 // These, and loading and storing nodes, are all that a backend writes itself. It may also define OWN_PULL and bring the
 // same pull(l, square) in another form, if it has the pieces of the sum at hand; and OWN_CELLS and bring
-// cells_force(node), if it works out damped_cell_forces() once for each cell. And what it knows of a pass when it is compiled
+// cells_force(), if it works out damped_cell_forces() once for each cell. And what it knows of a pass when it is compiled
 // it may define in place of these, so that what never acts is left out (SPRINGS: how many of the links pull):
 #ifndef FAN
 #define FAN pass.fan
@@ -116,7 +117,7 @@ ASIDE Real3 elastic_stiffness_times(Node node) {
 ASIDE Real elastic_energy(Real3 position) {
     Real energy = spring_energy(position);
     if (HINGES > 0) energy += bending_energy(position);
-    if (CELLS > 0) energy += own_cell_energy(position);
+    if (CELLS > 0) energy += own_cell_energy();
     return energy;
 }
 
@@ -160,7 +161,7 @@ FN Real3 tool_force(Real3 position) {
 FN Real3 acceleration(Node node) {
     Real3 force = elastic_force(node.position);
     if (LINK_DAMPING) force += elastic_damping(node);
-    if (CELLS > 0) force += cells_force(node);
+    if (CELLS > 0) force += cells_force();
     if (TIPS + PUSHES > 0) force += tool_force(node.position);
     if (WIND) force += wind_force(node);
     return node.inverse_mass * force + xyz(pass.gravity) - Real(pass.damping) * node.velocity;
@@ -189,6 +190,6 @@ FN Node collect(Node sum, Node now, Real3 change) {
 // How many things are wrong with a node: its place is not a number, or a spring or a cell is torn.
 ASIDE Real torn(Real3 position) {
     Real wrong = select(dot(position, position) <= Real(1e30f), Real(0.0f), Real(1.0f)) + torn_springs(position);
-    if (CELLS > 0) wrong += own_cell_torn(position);
+    if (CELLS > 0) wrong += own_cell_torn();
     return wrong;
 }

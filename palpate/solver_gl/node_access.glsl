@@ -82,19 +82,19 @@ int cell(int k) { return floatBitsToInt(texelFetch(ties, (LINKS + 2 * HINGES + (
 vec4 cell_part(int k, int part) { return texelFetch(ties, (LINKS + 2 * HINGES + 2) * SLOTS + 3 * cell(k) + part); }
 int cell_slot(int k, int c) { return floatBitsToInt(cell_part(k, c >> 2)[c & 3]); }
 float cell_weight(int k) { return cell(k) < 0 ? 0 : cell_part(k, 2).x; }
-vec3 cell_corner(vec3 p, int k, int c) { return cell(k) < 0 ? vec3(0) : at(positions, cell_slot(k, c)).xyz - p; }
-vec3 cell_corner_passing(vec3 v, int k, int c) { return cell(k) < 0 ? vec3(0) : velocity_of(at(velocities, cell_slot(k, c))) - v; }
+vec3 cell_corner(int k, int c) { return cell(k) < 0 ? vec3(0) : at(positions, cell_slot(k, c)).xyz; }
+vec3 cell_corner_velocity(int k, int c) { return cell(k) < 0 ? vec3(0) : velocity_of(at(velocities, cell_slot(k, c))); }
+vec3 cell_axis(int axis) { return vec3(0); }
 
 // Cells are worked out before a pass, each once (cells.comp), and what they do to their corners lies one cell after the other.
 #define OWN_CELLS
 layout(binding = cell_forces_unit) uniform samplerBuffer forces_on_corners;
-vec3 forces_of_cells() {
+vec3 cells_force() {
     vec3 sum = vec3(0);
     for (int k = 0; k < CELLS; ++k)
         if (cell(k) >= 0) sum += texelFetch(forces_on_corners, 8 * cell(k) + k).xyz;
     return sum;
 }
-#define cells_force(node) forces_of_cells()
 
 vec3 origin() { return vec3(0); }
 float area() { return uintBitsToFloat(trait.z); }

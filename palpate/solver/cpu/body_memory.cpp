@@ -90,12 +90,12 @@ bool in_quarters(Springs springs) {
            springs == Springs::turned_lattice || springs == Springs::tissue;
 }
 
-// Slots, from a node back to the lowest corner of any of its cells.
+// Slots, from a node back to the first in the rows beside it whose cells hold it too.
 int reach_of_cells(const Layout& layout) {
-    const std::size_t links = lattice_links + 2;
+    constexpr std::size_t back = lattice_links + 7, links = back + 3;
     int reach = 0;
     for (std::size_t at = 0; at < layout.offsets.size(); at += links)
-        for (std::size_t back : {1, 3, 5, 7, 11, 15, 19}) reach = std::max(reach, -layout.offsets[at + back]);
+        for (std::size_t row = 0; row < 3; ++row) reach = std::max(reach, -layout.offsets[at + back + row]);
     return reach;
 }
 
@@ -171,8 +171,8 @@ BodyMemory::BodyMemory(const Body& body, const Simulation& simulation, int lanes
             for (std::size_t i = 0; i < body.count(); ++i) write_cells(body, cells[i], i);
         }
     }
-    const mat3 edges = cell_edges(body);
-    for (int c = 0; c < 8; ++c) view_.cells.corners[std::size_t(c)] = edges * vec3(c & 1, c >> 1 & 1, c >> 2);
+    for (int axis = 0; axis < 3; ++axis)
+        view_.cells.axes[axis] = cell_edges(body) / body.spacing * vec3(layout_.corner(1 << axis));
     bound_blocks(body);
     view_.runs = layout_.runs.data();
     view_.blocks = layout_.blocks.data();
@@ -239,8 +239,10 @@ void BodyMemory::write_shares(const Body& body, std::size_t node) {
 void BodyMemory::write_cells(const Body& body, const OwnCells& cells, std::size_t node) {
     const int slot = layout_.slot[node];
     cell_weights_[slot] = cells[0] < 0 ? 0 : tissue_of(body)->weights[std::size_t(cells[0])];
-    for (unsigned k = 0; k < 8; ++k)
-        if (cells[k] >= 0) words_[1].data()[slot] |= 1u << (24 + k);
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 c = layout_.corner(k);
+        if (cells[std::size_t(c.x + 2 * c.y + 4 * c.z)] >= 0) words_[1].data()[slot] |= 1u << (24 + k / 2);
+    }
 }
 
 bool BodyMemory::change(const Body& body, std::span<const int> nodes) {

@@ -144,7 +144,7 @@ class Cpu final : public Machine {
         const int lanes = kernels_.lanes, needed = memory_.view().cells.reach + Block::most + lanes;
         const int size = (needed + lanes - 1) / lanes * lanes;
         for (int member = 0; member < team_.members(); ++member) {
-            arrays_.emplace_back(std::size_t(24 * (size + kernels_.lanes)), member);
+            arrays_.emplace_back(std::size_t(12 * (size + kernels_.lanes)), member);
             rings_.push_back({arrays_.back().data(), size});
         }
     }

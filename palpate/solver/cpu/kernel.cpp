@@ -69,7 +69,8 @@ FN void for_each_pack(const Task& s, int first_block, int end_block, Do act) {
         for_each_pack<Physics>(s, pass, constants, s.states[s.plan.at], block, act);
 }
 
-// Works out cells of tissue, in the order of their lowest corners, not long before nodes need them.
+// Works out cells of tissue, in the order of their lowest corners, not long before nodes need them: along a
+// row first, since the nodes of a row are neighbours in a register.
 template <class Physics>
 class CellsAhead {
  public:
@@ -80,9 +81,10 @@ class CellsAhead {
         wanted_ = Physics::has_cells && first_block < end_block && pass.kick > 0;
         if (!wanted_) return;
         const auto width = std::ptrdiff_t(lanes());
-        next_ = s.body.blocks[first_block].first_slot - s.body.cells.reach;
+        next_ = s.body.blocks[first_block].first_slot - s.body.cells.reach - 1;  // 1: the cell before
         next_ -= next_ < 0 ? width + next_ % width : next_ % width;
-        for (; next_ < 0; next_ += width) write({});  // there are none before the first
+        place_ = (next_ + s.cells.size) % s.cells.size;
+        while (next_ < 0) go_on({});  // there are none before the first
     }
 
     // Those whose lowest corners lie before this slot.
@@ -90,24 +92,51 @@ class CellsAhead {
         if constexpr (!Physics::has_cells) return;
         if (!wanted_) return;
         const Fields& at = s_.states[s_.plan.at];
-        for (; next_ < end_slot; next_ += std::ptrdiff_t(lanes())) {
+        while (next_ < end_slot) {
             while (s_.body.runs[run_].first + s_.body.runs[run_].count <= next_) ++run_;
             Physics physics(s_, pass_, constants_, at, run_, next_);
-            if constexpr (Physics::has_cells)
-                write(physics.on_corners(
-                    physics.damped_cell_forces(load_node<Physics>(s_.body, at, next_), 0)));
+            if constexpr (Physics::has_cells) go_on(physics.damped_cell_forces(0));
         }
     }
 
  private:
-    FN void write(const typename Physics::Eight& pushes) {
-        const std::ptrdiff_t size = s_.cells.size, width = std::ptrdiff_t(lanes()), array = size + width,
-                             place = (next_ + size) % size;
-        for (int c = 0; c < 8; ++c) {
-            float* const numbers = s_.cells.numbers + 3 * c * array;
-            store(pushes.c[c], numbers, numbers + array, numbers + 2 * array, place);
+    using EightReals = typename Physics::EightReals;
+
+    // By what the cells of a register do, by modes.
+    FN void go_on(const typename Physics::Eight& push) {
+        EightReals x, y, z;
+        for (int k = 1; k < 8; ++k) x.c[k] = push.c[k].x, y.c[k] = push.c[k].y, z.c[k] = push.c[k].z;
+        write(x, 0);
+        write(y, 1);
+        write(z, 2);
+        next_ += std::ptrdiff_t(lanes());
+        place_ += std::ptrdiff_t(lanes());
+        if (place_ == s_.cells.size) place_ = 0;
+    }
+
+    // One component of it, on the nodes of the four rows that the cells lie between.
+    FN void write(const EightReals& mode, int component) {
+        Pack row[4];
+        for (int r = 0; r < 4; ++r) {
+            const Pack along = mode.c[2 * r + 1];  // there is no mode 0
+            const Pack after = one_lane_on(r > 0 ? mode.c[2 * r] + along : along);
+            Pack& before = before_[component][r];
+            row[r] = first_lane_of(before, after) + (r > 0 ? mode.c[2 * r] - along : -along);
+            before = after;
+        }
+        for (int step : {1, 2})
+            for (int r = 0; r < 4; ++r)
+                if ((r & step) == 0) {
+                    const Pack a = row[r], b = row[r + step];
+                    row[r] = a - b;
+                    row[r + step] = a + b;
+                }
+        const std::ptrdiff_t size = s_.cells.size, array = size + std::ptrdiff_t(lanes());
+        for (int r = 0; r < 4; ++r) {
+            float* const numbers = s_.cells.numbers + (3 * r + component) * array;
+            store(row[r], numbers + place_);
             // Once more behind the last, for registers that begin before it.
-            if (place == 0) store(pushes.c[c], numbers, numbers + array, numbers + 2 * array, size);
+            if (place_ == 0) store(row[r], numbers + size);
         }
     }
 
@@ -115,8 +144,9 @@ class CellsAhead {
     const typename Physics::WithPass& pass_;
     const typename Physics::Constants& constants_;
     bool wanted_ = false;
-    std::ptrdiff_t next_ = 0;
+    std::ptrdiff_t next_ = 0, place_ = 0;
     int run_ = 0;
+    Pack before_[3][4] = {};  // what the last register did to the corners behind it, one lane on
 };
 
 // Forces and the motion that they bring.

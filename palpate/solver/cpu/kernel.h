@@ -61,15 +61,16 @@ struct Hinges {
 
 /// Cells of tissue.
 struct Cells {
-    std::array<vec3, 8> corners;  // m, at rest, from the lowest
+    mat3 axes;             // columns: directions of their edges at rest; a grid's along the rows first
     const float* weights;  // a grid's: of the cell whose lowest corner is the node; 0 where there is none
-    int reach;             // a grid's: slots from a node back to the lowest corner of any of its cells
+    int reach;             // a grid's: slots from a node back to the first of the rows that hold its cells
     const std::uint32_t* records;  // a table's; null where it has none
 };
 
-/// What cells do to their corners, N: x, y, z of each corner in turn, 24 arrays of `size` and one register
-/// more. The cell of a slot stands at the slot modulo `size`, which is as much as the next nodes need: a
-/// layer of the grid or so, which stays in the cache unless the grid is very wide.
+/// What cells do to their corners, N, added up along the rows: of each slot what the cell there and the one
+/// before it do to their corners there, and to those in the three rows beside. x, y, z of each row in turn,
+/// 12 arrays of `size` and one register more. A slot stands at itself modulo `size`, which is as much as the
+/// next nodes need: a layer of the grid or so, which stays in the cache unless the grid is very wide.
 struct CellRing {
     float* numbers;
     int size;
@@ -92,7 +93,7 @@ struct BodyView {
     std::array<vec3, 32> along;   // a grid's: each link at rest, m
     float spacing;                // m, where links follow the axes
     /// A grid's shares, one bit a link, or three of ten links each; of tissue, from bit 24 of the second on,
-    /// whether there is a cell of which the node is corner 0, 1 …
+    /// whether there is a cell of which the node is corner 0 or 1, 2 or 3 …
     const std::uint32_t* words[2];
     const float* half_strength;  // half of each node's factor on stiffness; null: 1
     Ties ties;                   // a table's

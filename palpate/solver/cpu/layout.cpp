@@ -56,13 +56,14 @@ class GridLayout {
  public:
     GridLayout(const Body& body, int lanes, Layout& layout)
         : body_(body), stencil_(*body.grid()), lanes_(lanes), layout_(layout) {
+        box_ = fills_its_box(body.at);
+        choose_axis();
         for (const Link& link : stencil_.links) links_.push_back(link.offset);
         if (tissue_of(body)) {
             cells_ = own_cells(body);
-            links_.insert(links_.end(), {ivec3(1), ivec3(-1)});
+            for (int k = 1; k < 8; ++k) links_.push_back(layout.corner(k));
+            for (int row = 1; row < 4; ++row) links_.push_back(-layout.corner(2 * row));
         }
-        box_ = fills_its_box(body.at);
-        choose_axis();
         give_slots();
         if (box_)
             add_runs_of_box();
@@ -81,6 +82,7 @@ class GridLayout {
             for (const Segment& row : rows) registers += std::size_t(rounded_up(row.length, lanes_) / lanes_);
             if (axis > 0 && registers >= least) continue;
             least = registers;
+            layout_.row_axis = axis;
             places_ = std::move(places);
             segments_ = std::move(rows);
         }
@@ -193,6 +195,12 @@ Layout::Layout(std::span<const int> order, int lanes)
     for (int first = 0; first < slots; first += Block::most)
         runs.push_back({first, std::min(Block::most, slots - first)});
     make_blocks();
+}
+
+ivec3 Layout::corner(int k) const {
+    ivec3 c(0);
+    for (int bit = 0; bit < 3; ++bit) c[(row_axis + bit) % 3] = k >> bit & 1;
+    return c;
 }
 
 void Layout::make_blocks() {

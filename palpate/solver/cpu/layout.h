@@ -30,9 +30,13 @@ struct Layout {
     std::vector<int> slot;  // of each node
     std::vector<Run> runs;  // at most 256 slots each
     std::vector<Block> blocks;
-    /// Of each run and each link: from a slot to that of its neighbour. In tissue two more follow: through
-    /// the cell to its highest corner, and back through the one below.
+    /// Of each run and each link: from a slot to that of its neighbour. In tissue ten more follow: from the
+    /// lowest corner of a cell to the others, 1 to 7; and from a node to those before it in the rows beside,
+    /// 1 to 3, whose cells hold it too.
     std::vector<int> offsets;
+    /// The axis of the grid along which rows run. Corners of cells are counted from it on: of corner k, along
+    /// the rows in the lowest bit, then along the next axis, x after z, then along the third.
+    int row_axis = 0;
     int slots = 0;
     int margin = 0;  // slots before the first and behind the last that a run may read
 
@@ -44,6 +48,9 @@ struct Layout {
 
     /// A body whose springs are written out: its nodes in that order.
     Layout(std::span<const int> order, int lanes);
+
+    /// Corner k of a cell, as the grid counts its axes.
+    ivec3 corner(int k) const;
 
  private:
     void make_blocks();

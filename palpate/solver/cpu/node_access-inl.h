@@ -68,6 +68,10 @@ struct NodeAccess {
         const vec3 c = body.corners[i];
         return {c.x, c.y, c.z};
     }
+    FN Pack3 cell_axis(int axis) const {
+        const vec3 a = body.cells.axes[axis];
+        return {a.x, a.y, a.z};
+    }
     // Fields are looked up one node after the other.
     HWY_NOINLINE Pack distance_at(int i, Pack3 p) const {
         return each(p, [&](vec3 q) { return vec3(body.fields[i]->at(q), 0, 0); }).x;
@@ -96,7 +100,7 @@ struct Stencil {
     static constexpr int along(int l, int axis) { return offsets[std::size_t(l)][axis]; }
 };
 using LatticeStencil = Stencil<lattice_links, 1, volume_links>;
-using TissueStencil = Stencil<lattice_links, 1, volume_links, lattice_links + 2>;
+using TissueStencil = Stencil<lattice_links, 1, volume_links, lattice_links + 10>;
 using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
 using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
@@ -105,14 +109,11 @@ using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
     using NodeAccess<P>::body, NodeAccess<P>::pass, NodeAccess<P>::task, NodeAccess<P>::at,                 \
         NodeAccess<P>::id, NodeAccess<P>::origin, NodeAccess<P>::area, NodeAccess<P>::cover,                \
         NodeAccess<P>::tip, NodeAccess<P>::push, NodeAccess<P>::push_target, NodeAccess<P>::push_stiffness, \
-        NodeAccess<P>::corner, NodeAccess<P>::distance_at, NodeAccess<P>::uphill_at, NodeAccess<P>::hinges, \
-        NodeAccess<P>::hinge_end, NodeAccess<P>::hinge_toward, NodeAccess<P>::hinge_passing,                \
-        NodeAccess<P>::hinge_stiffness, NodeAccess<P>::hinge_rest, NodeAccess<P>::hinge_area_square,        \
-        NodeAccess<P>::of_nodes;                                                                            \
+        NodeAccess<P>::corner, NodeAccess<P>::cell_axis, NodeAccess<P>::distance_at,                        \
+        NodeAccess<P>::uphill_at, NodeAccess<P>::hinges, NodeAccess<P>::hinge_end,                          \
+        NodeAccess<P>::hinge_toward, NodeAccess<P>::hinge_passing, NodeAccess<P>::hinge_stiffness,          \
+        NodeAccess<P>::hinge_rest, NodeAccess<P>::hinge_area_square, NodeAccess<P>::of_nodes;               \
     using typename NodeAccess<P>::Real, typename NodeAccess<P>::Real3;
-
-// Which link of the tissue's stencil leads from a cell's lowest corner to its others, and from those back.
-constexpr int to_corner[] = {-1, 0, 2, 6, 4, 10, 14, 18}, from_corner[] = {-1, 1, 3, 7, 5, 11, 15, 19};
 
 // Nodes of a grid: their neighbours along a link are as far away for all of them.
 template <class Links, int bits_per_link, bool along_axes, bool with_strength, bool with_cells = false,
@@ -131,14 +132,17 @@ struct GridPhysics : NodeAccess<AnyPass> {
     struct Constants {
         Pack stiffness[Links::count], tension_half[Links::count], tension_three_halves[Links::count];
         Word bits_of[Links::count];
+        Word bit_of_row[4];  // of tissue
         FN explicit Constants(const Pass& pass) {
+            const hn::RebindToUnsigned<Lanes> d;
+            for (int row = 0; row < 4; ++row) bit_of_row[row] = hn::Set(d, std::uint32_t(1) << (24 + row));
             for (int l = 0; l < Links::count; ++l) {
                 const float unit = one_over_whole(l);
                 stiffness[l] = unit * pass.spring[l].stiffness;
                 tension_half[l] = 0.5f * unit * pass.spring[l].tension;
                 tension_three_halves[l] = 1.5f * unit * pass.spring[l].tension;
                 const std::uint32_t bits = bits_per_link == 1 ? 1 : 7;
-                bits_of[l] = hn::Set(hn::RebindToUnsigned<Lanes>(), bits << (l % per_word * bits_per_link));
+                bits_of[l] = hn::Set(d, bits << (l % per_word * bits_per_link));
             }
         }
     };
@@ -216,28 +220,21 @@ struct GridPhysics : NodeAccess<AnyPass> {
     }
 
     // Of cells whose lowest corners these are.
-    FN Pack3 cell_corner(Pack3 p, int, int c) const {
-        if (c == 0) return Pack3(0.0f, 0.0f, 0.0f);
-        const vec3 way = body.cells.corners[std::size_t(c)];
-        return load(x, y, z, offsets[to_corner[c]]) - p + Pack3(way.x, way.y, way.z);
-    }
-    FN Pack3 cell_corner_passing(Pack3 v, int, int c) const {
-        if (c == 0) return Pack3(0.0f, 0.0f, 0.0f);
-        return load(at.vx, at.vy, at.vz, id + offsets[to_corner[c]]) - v;
-    }
+    FN Pack3 cell_corner(int, int c) const { return load(x, y, z, to_corner(c)); }
+    FN Pack3 cell_corner_velocity(int, int c) const { return load(at.vx, at.vy, at.vz, id + to_corner(c)); }
+    FN int to_corner(int c) const { return c == 0 ? 0 : offsets[Links::count + c - 1]; }
     FN Pack cell_weight(int) const { return load(body.cells.weights + id); }
 
     // What the cells around them do, which CellsAhead has worked out.
-    template <class OfNode>
-    FN Pack3 cells_force(const OfNode&) const {
+    FN Pack3 cells_force() const {
         const std::ptrdiff_t size = task.cells.size, array = size + std::ptrdiff_t(lanes());
         const std::ptrdiff_t here = std::uint32_t(id) % std::uint32_t(size);
         Pack3 force(0.0f, 0.0f, 0.0f);
-        _Pragma("GCC unroll 8") for (int k = 0; k < 8; ++k) {
-            std::ptrdiff_t place = here + (k > 0 ? offsets[from_corner[k]] : 0);
+        _Pragma("GCC unroll 4") for (int row = 0; row < 4; ++row) {
+            std::ptrdiff_t place = here + (row > 0 ? offsets[Links::count + 6 + row] : 0);
             if (place < 0) place += size;
-            const float* const pushes = task.cells.numbers + 3 * k * array + place;
-            const Word bit = hn::Set(hn::RebindToUnsigned<Lanes>(), std::uint32_t(1) << (24 + k));
+            const float* const pushes = task.cells.numbers + 3 * row * array + place;
+            const Word bit = constants.bit_of_row[row];
             const Mask there = hn::RebindMask(Lanes(), hn::Eq(hn::And(word[1], bit), bit));
             force +=
                 {hn::IfThenElseZero(there, load(pushes).v), hn::IfThenElseZero(there, load(pushes + array).v),
@@ -323,13 +320,8 @@ struct TablePhysics : NodeAccess<AnyPass> {
             body.cells.records)[8 * (std::size_t(id) / lanes()) + std::size_t(k)];
     }
     FN Pack cell_weight(int k) const { return load(cell(k).weight); }
-    FN Pack3 cell_corner(Pack3 p, int k, int c) const {
-        const vec3 way = body.cells.corners[std::size_t(c)] - body.cells.corners[std::size_t(k)];
-        return of_nodes(at.places, cell(k).corners[c]) - p + Pack3(way.x, way.y, way.z);
-    }
-    FN Pack3 cell_corner_passing(Pack3 v, int k, int c) const {
-        return of_nodes(at.speeds, cell(k).corners[c]) - v;
-    }
+    FN Pack3 cell_corner(int k, int c) const { return of_nodes(at.places, cell(k).corners[c]); }
+    FN Pack3 cell_corner_velocity(int k, int c) const { return of_nodes(at.speeds, cell(k).corners[c]); }
 
     // With the share worked into stiffness and tension. The stream is longer than the nearer caches, and is
     // asked for ahead: that brings a twentieth where it fits the last of them, a fifth where it does not.

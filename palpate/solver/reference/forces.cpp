@@ -36,7 +36,7 @@ struct Forces::Inside {
         parallel_for(into.size(), 4096, [&](std::size_t i) {
             Physics nodes = physics(now, i, cells);
             into[i] = of_node(nodes, reference::load(around, now, i));
-            if (around.tissue) into[i] += nodes.cells_force({});
+            if (around.tissue) into[i] += nodes.cells_force();
         });
     }
 };
@@ -62,8 +62,7 @@ void Forces::stiffness_times(std::span<const dvec3> positions, std::span<const d
             const auto lowest = std::size_t(in_->body.cells[c][0]);
             Physics physics = in_->physics(now, lowest);
             return physics.on_corners(physics.cell_stiffness_times(
-                physics.cell_corners(positions[lowest], 0), physics.cell_passing(displacement[lowest], 0),
-                physics.cell_weight(0)));
+                physics.cell_corners(0), physics.cell_velocities(0), physics.cell_weight(0)));
         },
         [](Physics& physics, const Physics::Node& node) { return physics.elastic_stiffness_times(node); });
 }

@@ -88,12 +88,13 @@ struct NodePhysics {
     Real hinge_area_square(int h) const { return hinges[std::size_t(h)].area_square; }
     int cell(int k) const { return world.cells[std::size_t(id)][std::size_t(k)]; }
     Real cell_weight(int k) const { return cell(k) < 0 ? 0 : world.tissue->weights[std::size_t(cell(k))]; }
-    Real3 cell_corner(Real3 p, int k, int c) const {
-        return cell(k) < 0 ? Real3(0) : now.positions[corner_node(k, c)] - p;
+    Real3 cell_corner(int k, int c) const {
+        return cell(k) < 0 ? Real3(0) : now.positions[corner_node(k, c)];
     }
-    Real3 cell_corner_passing(Real3 v, int k, int c) const {
-        return cell(k) < 0 ? Real3(0) : now.velocities[corner_node(k, c)] - v;
+    Real3 cell_corner_velocity(int k, int c) const {
+        return cell(k) < 0 ? Real3(0) : now.velocities[corner_node(k, c)];
     }
+    Real3 cell_axis(int) const { return Real3(0); }
     std::size_t corner_node(int k, int c) const {
         return std::size_t(world.body.cells[std::size_t(cell(k))][std::size_t(c)]);
     }
@@ -139,7 +140,7 @@ struct NodePhysics {
 #undef FN
 
     // A cell is worked out once for its eight nodes.
-    Real3 cells_force(const Node&) const {
+    Real3 cells_force() const {
         Real3 force(0);
         for (int k = 0; k < 8; ++k)
             if (cell(k) >= 0) force += cell_pushes[cell(k)].c[k];
@@ -178,7 +179,7 @@ typename NodePhysics<Real, with_hinges>::Eight cell_pushes(const Surroundings& a
                                                            const NodesNow<Real>& now, std::size_t c) {
     const auto lowest = std::size_t(all.body.cells[c][0]);
     NodePhysics<Real, with_hinges> physics = see<Real, with_hinges>(all, pass, now, lowest);
-    return physics.on_corners(physics.damped_cell_forces(load<Real, with_hinges>(all, now, lowest), 0));
+    return physics.on_corners(physics.damped_cell_forces(0));
 }
 
 }  // namespace palpate::reference

@@ -43,15 +43,23 @@ FN Eight vectors(EightReals x, EightReals y, EightReals z) {
     return e;
 }
 
+// Sums and differences along the three axes, but for the sum of all. Corners are subtracted from each other before
+// anything is added, since they may be far from where they count from.
 FN EightReals sums_and_differences(EightReals e) {
-    UNROLL for (int axis = 0; axis < 3; ++axis)
-        UNROLL for (int k = 0; k < 8; ++k)
-            if ((k >> axis & 1) == 0) {
-                Real a = e.c[k], b = e.c[k + (1 << axis)];
-                e.c[k] = a + b;
-                e.c[k + (1 << axis)] = b - a;
-            }
-    return e;
+    Real x0 = e.c[1] - e.c[0], x1 = e.c[3] - e.c[2], x2 = e.c[5] - e.c[4], x3 = e.c[7] - e.c[6];  // edges along x
+    Real y = (e.c[2] - e.c[0]) + (e.c[3] - e.c[1]);  // from the first of these to the others, twice
+    Real z = (e.c[4] - e.c[0]) + (e.c[5] - e.c[1]);
+    Real yz = (e.c[6] - e.c[0]) + (e.c[7] - e.c[1]);
+    EightReals mode;
+    mode.c[0] = Real(0.0f);
+    mode.c[1] = (x0 + x1) + (x2 + x3);
+    mode.c[2] = y + (yz - z);
+    mode.c[3] = (x1 - x0) + (x3 - x2);
+    mode.c[4] = (yz + z) - y;
+    mode.c[5] = (x2 + x3) - (x0 + x1);
+    mode.c[6] = (yz - z) - y;
+    mode.c[7] = (x3 - x2) - (x1 - x0);
+    return mode;
 }
 
 FN EightReals transposed_sums(EightReals e) {
@@ -65,7 +73,7 @@ FN EightReals transposed_sums(EightReals e) {
     return e;
 }
 
-// Sums and differences along the three axes. 1, 2 and 4 are four times the mean edges; 3, 5, 6 and 7 the hourglasses.
+// 1, 2 and 4 are four times the mean edges; 3, 5, 6 and 7 the hourglasses.
 FN Eight modes(Eight e) {
     return vectors(sums_and_differences(x_of(e)), sums_and_differences(y_of(e)), sums_and_differences(z_of(e)));
 }
@@ -91,9 +99,9 @@ struct Deformation {
 FN Deformation deformation(Eight mode) {
     Real to_f = Real(0.25f / pass.cell_size);
     Deformation now;
-    now.f0 = to_f * mode.c[1];
-    now.f1 = to_f * mode.c[2];
-    now.f2 = to_f * mode.c[4];
+    now.f0 = to_f * mode.c[1] + cell_axis(0);
+    now.f1 = to_f * mode.c[2] + cell_axis(1);
+    now.f2 = to_f * mode.c[4] + cell_axis(2);
     now.k0 = cross(now.f1, now.f2);
     now.k1 = cross(now.f2, now.f0);
     now.k2 = cross(now.f0, now.f1);
@@ -116,19 +124,18 @@ FN Eight with_hourglasses(Eight push, Eight mode, Real weight) {
     return push;
 }
 
-// N, by modes: what a cell does to its corners, which may count from any point.
+// N, by modes: what a cell does to its corners.
 FN Eight cell_forces(Eight corners, Real weight) {
     Eight mode = modes(corners), push;
     Deformation now = deformation(mode);
     Real squeezed = max(-now.d, Real(0.0f)), ease = eased(now.drawn);
-    Real pressure = ease * (Real(pass.lame) * now.d - Real(pass.shear) * squeezed) -
-                    Real(pass.shear) / (Real(1.0f) + max(now.d, Real(0.0f)));
-    Real bulk = Real(pass.lame) * now.d * now.d + Real(pass.shear) * squeezed * squeezed;
-    Real tension = Real(pass.shear) - Real(8.0f / 3.0f) * now.drawn * ease * ease * bulk;
     Real area = Real(-0.25f * pass.cell_size * pass.cell_size) * weight;
-    push.c[1] = area * (tension * now.f0 + pressure * now.k0);
-    push.c[2] = area * (tension * now.f1 + pressure * now.k1);
-    push.c[4] = area * (tension * now.f2 + pressure * now.k2);
+    Real bulk = ease * (Real(pass.lame) * now.d - Real(pass.shear) * squeezed);
+    Real pressure = area * (bulk - Real(pass.shear) / (Real(1.0f) + (now.d + squeezed)));
+    Real tension = area * (Real(pass.shear) - (Real(8.0f / 3.0f) * now.drawn * ease) * (bulk * now.d));
+    push.c[1] = tension * now.f0 + pressure * now.k0;
+    push.c[2] = tension * now.f1 + pressure * now.k1;
+    push.c[4] = tension * now.f2 + pressure * now.k2;
     return with_hourglasses(push, mode, Real(-1.0f) * weight);
 }
 
@@ -166,42 +173,42 @@ ASIDE Real cell_energy(Eight corners, Real weight) {
 
 // ---- what a node has of the cells around it ----
 
-FN Eight cell_corners(Real3 position, int k) {
+FN Eight cell_corners(int k) {
     Eight corners;
-    UNROLL for (int c = 0; c < 8; ++c) corners.c[c] = cell_corner(position, k, c);
+    UNROLL for (int c = 0; c < 8; ++c) corners.c[c] = cell_corner(k, c);
     return corners;
 }
-FN Eight cell_passing(Real3 velocity, int k) {
+FN Eight cell_velocities(int k) {
     Eight corners;
-    UNROLL for (int c = 0; c < 8; ++c) corners.c[c] = cell_corner_passing(velocity, k, c);
+    UNROLL for (int c = 0; c < 8; ++c) corners.c[c] = cell_corner_velocity(k, c);
     return corners;
 }
 
 // N, by modes: what the cell of which this node is corner k does, with the damping that is proportional to stiffness.
-FN Eight damped_cell_forces(Node node, int k) {
-    Eight corners = cell_corners(node.position, k);
+FN Eight damped_cell_forces(int k) {
+    Eight corners = cell_corners(k);
     Eight force = cell_forces(corners, cell_weight(k));
     if (LINK_DAMPING) {
-        Eight resistance = cell_stiffness_times(corners, cell_passing(node.velocity, k), cell_weight(k));
+        Eight resistance = cell_stiffness_times(corners, cell_velocities(k), cell_weight(k));
         UNROLL for (int c = 0; c < 8; ++c) force.c[c] -= Real(pass.link_damping) * resistance.c[c];
     }
     return force;
 }
 
 #ifndef OWN_CELLS
-FN Real3 cells_force(Node node) {
+FN Real3 cells_force() {
     Real3 force = Real3(0.0f, 0.0f, 0.0f);
-    for (int k = 0; k < CELLS; ++k) force += on_corner(damped_cell_forces(node, k), k);
+    for (int k = 0; k < CELLS; ++k) force += on_corner(damped_cell_forces(k), k);
     return force;
 }
 #endif
 
 // J, of the one of its cells of which this node is the lowest corner.
-ASIDE Real own_cell_energy(Real3 position) { return cell_energy(cell_corners(position, 0), cell_weight(0)); }
+ASIDE Real own_cell_energy() { return cell_energy(cell_corners(0), cell_weight(0)); }
 
 // 1 where that is stretched to ten times its size.
-ASIDE Real own_cell_torn(Real3 position) {
-    Deformation now = deformation(modes(cell_corners(position, 0)));
+ASIDE Real own_cell_torn() {
+    Deformation now = deformation(modes(cell_corners(0)));
     Real longest = max(max(dot(now.f0, now.f0), dot(now.f1, now.f1)), dot(now.f2, now.f2));
     return select(cell_weight(0) * (longest - Real(100.0f)) <= Real(0.0f), Real(0.0f), Real(1.0f));
 }
