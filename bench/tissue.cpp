@@ -59,6 +59,14 @@ Vectors displaced(const Body& body, Vectors displacement, const Vectors& free, c
     return displacement;
 }
 
+// Of a square cantilever that is twelve times as long as thick; `pull`: its weight, m/s².
+double timoshenko_sag(double thick, double modulus, double poisson, double pull) {
+    const double far = 12 * thick, load = density * thick * thick * pull,
+                 shape = 10 * (1 + poisson) / (12 + 11 * poisson);
+    return load * std::pow(far, 4) / (8 * modulus * std::pow(thick, 4) / 12) +
+           load * far * far / (2 * shape * shear_modulus(modulus, poisson) * thick * thick);
+}
+
 }  // namespace
 
 double tissue_sag(int cells, float poisson) {
@@ -75,10 +83,14 @@ double tissue_sag(int cells, float poisson) {
     double sag = 0;
     for (std::size_t i = 0; i < body.count(); ++i)
         if (body.at[i].x == length) sag -= moved[i].y / std::pow(cells + 1, 2);
-    const double nu = double(poisson), thick = cells * double(h), far = length * double(h),
-                 load = density * thick * thick * pull, shape = 10 * (1 + nu) / (12 + 11 * nu);
-    return sag / (load * std::pow(far, 4) / (8 * modulus * std::pow(thick, 4) / 12) +
-                  load * far * far / (2 * shape * shear_modulus(modulus, nu) * thick * thick));
+    return sag / timoshenko_sag(cells * double(h), modulus, double(poisson), pull);
+}
+
+double solid_sag(double poisson) {
+    const double thick = 0.01, modulus = 2000, pull = 1e-3;
+    const Block block{
+        .size = dvec3(12, 1, 1) * thick, .youngs_modulus = modulus, .poisson = poisson, .gravity = pull};
+    return bend_by_elements(block, 4).sag / timoshenko_sag(thick, modulus, poisson, pull);
 }
 
 double tissue_torque(int cells, float poisson) {

@@ -17,6 +17,9 @@ inline constexpr double density = 1000;  // kg/m³, of all tissue here
 /// The sag under its own weight of a square cantilever of tissue, `cells` thick and twelve times as long,
 /// over that of Timoshenko's beam theory.
 double tissue_sag(int cells, float poisson);
+/// The same of the solid itself, whose width the wall holds too, as CalculiX computes it. It needs the
+/// program ccx. Throws Error if that fails.
+double solid_sag(double poisson);
 
 /// The torque that twists a square bar of tissue, `cells` thick and eight times as long, with ends that are
 /// free to warp, over Saint-Venant's.

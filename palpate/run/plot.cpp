@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-constexpr double width = 800, panel_height = 260, left = 80, right = 30, top = 50, between = 70;
+constexpr double width = 960, panel_height = 260, left = 80, right = 190, top = 50, between = 70;
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73",
                                    "#cc79a7", "#e69f00", "#56b4e9"};  // distinguishable also with colour
                                                                       // blindness
@@ -91,7 +91,7 @@ std::string draw(const Panel& panel, double above) {
     svg += text(22, above + h / 2, "middle", panel.y_label,
                 fmt::format("transform=\"rotate(-90 22 {:.1f})\"", above + h / 2));
 
-    double key = above + 18;
+    double key = above + 12;  // beside the panel, where no curve crosses it
     for (std::size_t c = 0; c < panel.curves.size(); ++c) {
         const Curve& curve = panel.curves[c];
         const char* colour = colours[c % std::size(colours)];
@@ -102,7 +102,7 @@ std::string draw(const Panel& panel, double above) {
                 points += fmt::format("{:.1f},{:.1f} ", x(px), y(py));
         svg += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n",
                            points, colour);
-        svg += text(left + w - 4, key, "end", curve.name, fmt::format("fill=\"{}\"", colour));
+        svg += text(left + w + 12, key, "start", curve.name, fmt::format("fill=\"{}\"", colour));
         key += 18;
     }
     return svg;
