@@ -192,11 +192,14 @@ TEST(Tissue, BarsHaveTheirModulusAndPoissonsRatio) {
         }
 }
 
-// From one cell of thickness on.
+// From one cell of thickness on. The wall holds the width too, of which beam theory knows nothing; `solid`: how
+// far CalculiX's finest sags over that theory (docs/results.md).
 TEST(Tissue, CantileversSagAsBeamsDo) {
+    const std::pair<float, double> solids[] = {{0.3f, 0.991}, {0.45f, 0.979}, {0.49f, 0.973}};
     for (int cells : {1, 2, 3, 4})
-        for (float poisson : {0.3f, 0.45f})
-            EXPECT_LE(std::abs(studies::tissue_sag(cells, poisson) - 1), 0.08) << cells << ", " << poisson;
+        for (auto [poisson, solid] : solids)
+            EXPECT_LE(std::abs(studies::tissue_sag(cells, poisson) / solid - 1), 0.06)
+                << cells << ", " << poisson;
 }
 
 // Too stiffly where they are thin, since a cell knows of twisting only by its hourglasses; the excess falls
