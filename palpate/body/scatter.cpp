@@ -13,7 +13,6 @@ namespace {
 using Text = MappingIn<double>;
 
 // The nodes that a vertex follows.
-std::vector<int> followed(const InCell& vertex) { return {vertex.nodes.begin(), vertex.nodes.end()}; }
 std::vector<int> followed(const OnTriangle& vertex) { return {vertex.nodes.begin(), vertex.nodes.end()}; }
 struct OnItsFrames {
     const Framed& all;
@@ -94,7 +93,7 @@ struct Share {
     dmat3 jacobian;
 };
 
-// By central differences: exact where the place is linear in the nodes', as it is in cells.
+// By central differences.
 template <class Vertex>
 std::vector<Share> shares_of(const Vertex& vertex, const Nodes& nodes) {
     auto now = [&](int node) { return dvec3(nodes.positions[std::size_t(node)]); };
@@ -119,6 +118,20 @@ std::vector<Share> shares_of(const Vertex& vertex, const Nodes& nodes) {
             share.jacobian[k] = (moved(hair) - moved(-hair)) / (2 * hair);
         }
         shares.push_back(share);
+    }
+    return shares;
+}
+
+// In a cell the place is linear in the nodes'.
+std::vector<Share> shares_of(const InCell& vertex, const Nodes&) {
+    std::vector<Share> shares;
+    for (std::size_t k = 0; k < 8; ++k) {
+        double weight = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double at = double(vertex.at[axis]);
+            weight *= (k >> axis & 1) ? at : 1 - at;
+        }
+        shares.push_back({vertex.nodes[k], dmat3(weight)});
     }
     return shares;
 }

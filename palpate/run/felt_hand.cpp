@@ -21,7 +21,7 @@ std::vector<vec3> velocities(const std::vector<vec3>& from, const std::vector<ve
 FeltHand::FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth)
     : touch_(std::move(device), std::move(settings), warmth), start_(start) {}
 
-void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach) {
+void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, const Simulated& simulated) {
     felt_ = touch_.felt();
     before_.resize(skins.size());
     std::vector<std::vector<vec3>> speeds;
@@ -32,7 +32,7 @@ void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach) {
     for (std::size_t s = 0; s < skins.size(); ++s)
         surfaces.push_back({skins[s].positions, *skins[s].triangles, speeds[s], skins[s].is_sheet});
     const bool ticked = felt_.time > 0;
-    touch_.feel(Patch(surfaces, ticked ? felt_.proxy : start_, reach, time));
+    touch_.feel(Patch(surfaces, ticked ? felt_.proxy : start_, reach, time), simulated);
     for (std::size_t s = 0; s < skins.size(); ++s) before_[s] = skins[s].positions;
     before_time_ = time;
     // The old dents can only be removed once the touch has the new surfaces.

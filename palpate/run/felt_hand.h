@@ -20,7 +20,7 @@ class FeltHand {
     /// Sets what it can touch from `time` on: the skins within `reach` of it, as they lie then, with
     /// velocities from the last call on. `reach`: m, more than it moves until the next call.
     void feel(const std::vector<Skin>& skins, double time,
-              float reach = std::numeric_limits<float>::infinity());
+              float reach = std::numeric_limits<float>::infinity(), const Simulated& simulated = {});
 
     /// Says that the skins of the next feel() have jumped instead of moved: ...
     void expect_jump() { before_.clear(); }
@@ -32,6 +32,7 @@ class FeltHand {
 
     /// The state at the last feel() or tick(), so that everything in a picture shows the same moment.
     const Felt& felt() const { return felt_; }
+    vec3 start() const { return start_; }  // m
     Touch& touch() { return touch_; }
     /// Only if it is live.
     const TouchLoop& loop() const { return *loop_; }

@@ -31,6 +31,13 @@ Report::Body describe(const Model& model) {
     return body;
 }
 
+// s: bodies that hands press go on for so long before the hands feel them again.
+double slice_for(const Scene& scene) {
+    constexpr double felt_slice = 1e-3;
+    return std::ranges::count(scene.tools, ToolKind::touch, &ToolRecipe::kind) > 0 ? felt_slice
+                                                                                   : frame_seconds;
+}
+
 // A surface in a cage may be open; every other one except cloth encloses a volume.
 bool is_sheet(const BodyRecipe& recipe, const Mesh& surface) {
     return recipe.is_cloth() || (recipe.cage && soundness(surface).open_edges > 0);
@@ -59,6 +66,7 @@ struct Play::Acting {
     std::vector<BodyMove> moves;
     std::vector<Motion> colliders;
     vec3 wind = vec3(0);
+    decltype(Acts::press_in_slice) press_in_slice;
 };
 
 Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double seconds) {
@@ -79,7 +87,7 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
     : scene_(scene),
       made_(made),
       report_(report),
-      world_(made.simulation, context),
+      world_(made.simulation, context, nullptr, slice_for(scene)),
       skins_(made.models.size() + made.static_surfaces.size()),
       tools_(scene.tools.size()) {
     for (const Model& model : made.models) {
@@ -103,6 +111,7 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
         else
             handles_.emplace_back(Probe(tool, scene));
         probes_ |= tool.kind == ToolKind::dent;
+        presses_ |= tool.kind == ToolKind::touch;
         report.tools.emplace_back().name = tool.name;
     }
     const std::size_t models = made.models.size();
@@ -182,7 +191,8 @@ std::vector<Motion> Play::colliders(double time, double seconds) const {
 std::vector<Dent> Play::dents(std::size_t skin) const {
     std::vector<Dent> all;
     for (const auto& handle : handles_)
-        if (const auto* one = std::get_if<Probe>(&handle)) {
+        if (const auto* one = std::get_if<Probe>(&handle);
+            one && !(one->presses() && skin < world_.count())) {
             const std::vector<Dent> more = one->dents(int(skin), time_);
             all.insert(all.end(), more.begin(), more.end());
         }
@@ -195,17 +205,34 @@ void Play::probe(double time, double seconds) {
     skins();  // which have their own time
     Timed timed(report_.seconds.simulate);
     for (auto& handle : handles_)
-        if (auto* one = std::get_if<Probe>(&handle); one && one->is_there(time))
+        if (auto* one = std::get_if<Probe>(&handle); one && !one->presses() && one->is_there(time))
             one->advance(time, seconds, skins_, !made_.models.empty());
+}
+
+// What hands do to the bodies that they feel, which have moved since the last slice. One that is not there
+// presses nothing, so that reactions keep their places.
+std::vector<Press> Play::press(double time, double seconds, std::span<const dvec3> reactions) {
+    mapped_ = false;
+    skins();
+    std::vector<Press> all;
+    for (auto& handle : handles_)
+        if (auto* one = std::get_if<Probe>(&handle); one && one->presses()) {
+            const dvec3 reaction = all.size() < reactions.size() ? reactions[all.size()] : dvec3(0);
+            all.push_back(one->is_there(time) ? one->press(time, seconds, reaction, skins_, made_.models)
+                                              : Press{.stiffness = 0});
+        }
+    return all;
 }
 
 bool Play::advance(double time, double seconds, const Interaction& hands) {
     probe(time, seconds);
     const Acting on = acting(time, seconds, hands);
+    const double mapping = report_.seconds.map;
     {
         Timed timed(report_.seconds.simulate);
         if (!step(seconds, on)) return false;
     }
+    report_.seconds.simulate -= report_.seconds.map - mapping;  // which has its own time
     mapped_ = false;
     time_ = time + seconds;
     if (!on_gpu(made_.simulation.backend)) map();
@@ -238,6 +265,10 @@ Play::Acting Play::acting(double time, double seconds, const Interaction& hands)
         on.moves.push_back({made_.moves[i].body, {made_.moves[i].nodes, on.places[i]}});
     on.colliders = colliders(time, seconds);
     if (!scene_.wind.empty()) on.wind = position(scene_.wind, time + seconds / 2);
+    if (presses_)
+        on.press_in_slice = [=, this](double at, double slice, std::span<const dvec3> reactions) {
+            return press(time + at, slice, reactions);
+        };
     return on;
 }
 
@@ -246,7 +277,8 @@ bool Play::step(double seconds, const Acting& on) {
                                              .pushes = on.pushes,
                                              .moves = on.moves,
                                              .colliders = on.colliders,
-                                             .wind = on.wind});
+                                             .wind = on.wind,
+                                             .press_in_slice = on.press_in_slice});
     if (stats.diverged) {
         const std::size_t m = *stats.diverged;
         report_.notes.push_back(fmt::format("body {} diverged with steps of {:.4g} s", report_.bodies[m].name,
@@ -298,10 +330,10 @@ void Play::record(const Acting& on, double time, double seconds) {
         const auto* tip = std::get_if<Tip>(&handles_[t]);
         double force = glm::length(impulses[t]) / seconds;
         double depth = tip && tools_[t] ? tip->indentation(tools_[t]->centre, skins()) : 0;
-        if (const auto* one = std::get_if<Probe>(&handles_[t]); one && one->is_there(time - seconds)) {
+        if (auto* one = std::get_if<Probe>(&handles_[t]); one && one->is_there(time - seconds)) {
             tools_[t] = {one->centre(), {}};
-            force = one->force();
-            depth = one->depth();
+            force = one->take_force();
+            depth = one->depth(skins());
         }
         Report::Tool& tool = report_.tools[t];
         tool.largest_force = std::max(tool.largest_force, force);

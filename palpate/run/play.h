@@ -93,6 +93,7 @@ class Play {
     bool step(double seconds, const Acting& on);
     void map() const;
     void probe(double time, double seconds);
+    std::vector<Press> press(double time, double seconds, std::span<const dvec3> reactions);
     void record(const Acting& on, double time, double seconds);
 
     const Scene& scene_;
@@ -105,8 +106,9 @@ class Play {
     std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
     InteractionForces interaction_forces_;
-    double time_ = 0;      // s
-    bool probes_ = false;  // whether any tool is one
+    double time_ = 0;       // s
+    bool probes_ = false;   // whether any tool dents
+    bool presses_ = false;  // whether any tool presses what it feels
 };
 
 /// The even motion of a collider, which is given about its pivot, from one pose to the next.

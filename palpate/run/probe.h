@@ -1,7 +1,9 @@
 #pragma once
 #include "palpate/run/felt_hand.h"
+#include "palpate/scene/build.h"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace palpate {
@@ -12,14 +14,16 @@ std::vector<Feel> feels_of(const Scene& scene);
 /// Throws Error if a tool names an unknown device.
 void check_devices(const Scene& scene);
 
-/// A tool of the kind dent: a touch along a scripted path, ticked a thousand times a second on the run's own
-/// clock, with the dents that it leaves in pictures (2007).
+/// A tool that feels: a touch along a scripted path, ticked at least a thousand times a second on the run's
+/// own clock. One of the kind dent leaves dents in pictures (2007); one of the kind touch presses the bodies
+/// that it feels, and dents only what stands still.
 class Probe {
  public:
     /// Its surfaces are the skins of the scene, in order.
     Probe(const ToolRecipe& recipe, const Scene& scene);
 
     bool is_there(double time) const { return within(recipe_.path, time); }
+    bool presses() const { return recipe_.kind == ToolKind::touch; }
 
     /// Sets how the surfaces feel now; their number is the same. The device stays open, and the warmth of its
     /// motors is kept.
@@ -32,24 +36,33 @@ class Probe {
     /// surface that it shall touch. `moving`: skins may have moved since the last call.
     void advance(double time, double seconds, const std::vector<Skin>& skins, bool moving);
 
+    /// The same for one that presses bodies, the first of the skins: returns what presses them meanwhile.
+    /// `reaction`: N s, of the bodies to what it returned before.
+    Press press(double time, double seconds, dvec3 reaction, const std::vector<Skin>& skins,
+                std::span<const Model> bodies);
+
     /// The dents in a surface at a time; only the lasting ones if the tip is gone.
     std::vector<Dent> dents(int surface, double time) const;
 
     // Only after advance():
     vec3 centre() const { return vec3(hand_->felt().pose.place); }  // m
-    double force() const { return force_; }                         // N, mean over the last call
-    double depth() const { return hand_->felt().depth; }            // m, at its end
+    /// N: the mean of its strength since the last call.
+    double take_force();
+    /// m, how deep it presses.
+    double depth(const std::vector<Skin>& skins) const;
 
  private:
     void begin(double time, const std::vector<Skin>& skins);
+    void tick(double time, double seconds);
 
     ToolRecipe recipe_;
     std::string file_;  // of the scene, for messages
     std::vector<Feel> feels_;
     std::unique_ptr<FeltHand> hand_;
-    double start_ = 0;  // s
-    long ticks_ = 0;
-    double force_ = 0;
+    std::vector<Skin> untouched_;  // of one that presses
+    double slice_ = 0;             // s, how long it pressed by the last call
+    double forces_ = 0;            // N, the sum
+    long ticks_ = 0;               // of so many
 };
 
 }  // namespace palpate

@@ -76,14 +76,15 @@ Press Tip::press(double time, double frame, const std::vector<Skin>& skins) {
     return {here, (there - here) / float(frame), recipe_.radius, recipe_.stiffness};
 }
 
-double Tip::indentation(vec3 centre, const std::vector<Skin>& skins) const {
+double indentation(const std::vector<Skin>& untouched, const std::vector<Skin>& now, vec3 centre,
+                   float radius) {
     float deepest = 0;
-    const float reach = 1.2f * recipe_.radius;
-    for (std::size_t s = 0; s < untouched_.size(); ++s)
-        for (std::size_t i = 0; i < skins[s].positions.size(); ++i) {
-            const vec3 now = skins[s].positions[i];
-            if (glm::distance(now, centre) > reach) continue;
-            deepest = std::max(deepest, glm::dot(untouched_[s].positions[i] - now, untouched_[s].normals[i]));
+    const float reach = 1.2f * radius;
+    for (std::size_t s = 0; s < untouched.size(); ++s)
+        for (std::size_t i = 0; i < now[s].positions.size(); ++i) {
+            const vec3 place = now[s].positions[i];
+            if (glm::distance(place, centre) > reach) continue;
+            deepest = std::max(deepest, glm::dot(untouched[s].positions[i] - place, untouched[s].normals[i]));
         }
     return deepest;
 }

@@ -15,6 +15,11 @@ struct Skin {
     bool is_sheet = false;                // it encloses no volume, and is felt from both sides
 };
 
+/// The indentation of surfaces under a round tip, m: how far, at most, a vertex within 1.2 radii of the tip's
+/// centre is behind its untouched place, along its untouched normal.
+double indentation(const std::vector<Skin>& untouched, const std::vector<Skin>& now, vec3 centre,
+                   float radius);
+
 /// A tool's tip on a scripted path.
 class Tip {
  public:
@@ -28,9 +33,10 @@ class Tip {
     /// placed at the surface that it shall touch, and the surfaces are stored as untouched.
     Press press(double time, double frame, const std::vector<Skin>& skins);
 
-    /// The indentation of a surface under the tip, m: how far, at most, a vertex within 1.2 radii of the
-    /// tip's centre is behind its untouched place, along its untouched normal.
-    double indentation(vec3 centre, const std::vector<Skin>& skins) const;
+    /// How deep it presses with its centre there, m.
+    double indentation(vec3 centre, const std::vector<Skin>& skins) const {
+        return palpate::indentation(untouched_, skins, centre, recipe_.radius);
+    }
 
     /// The skins now belong to other meshes with the same vertices.
     void lies_over(const std::vector<Skin>& skins) {

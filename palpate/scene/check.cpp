@@ -244,9 +244,9 @@ void check(MoveRecipe& move, std::size_t number, const std::set<std::string>& bo
 
 void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const SceneSource& source) {
     const Require require("tool " + tool.name, tool.lines, source);
-    require("device", tool.kind == ToolKind::dent || tool.device == ToolRecipe{}.device,
+    require("device", feels(tool.kind) || tool.device == ToolRecipe{}.device,
             fmt::format("a {} does not use a device", name_of(tool.kind)),
-            fmt::format("leave out \"{}\", or make it a dent", tool.device));
+            fmt::format("leave out \"{}\", or make it a touch", tool.device));
     require("path", !tool.path.empty(), "no path", "give it a file or rows of [t, x, y, z]");
     require("along", (!tool.from && tool.shaft == 0) || glm::length(tool.along) > 0, "along is zero",
             "give it a direction");

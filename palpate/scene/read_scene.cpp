@@ -304,7 +304,7 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
         refuse({"from", "along", "shaft"}, "remove it");
     else
         refuse({"body", "near", "relative"}, "remove it, or write kind = \"drag\"");
-    if (tool.kind == ToolKind::dent)
+    if (feels(tool.kind))
         refuse({"stiffness"}, "say it of the surfaces: touch = { stiffness = 400 }");
 }
 

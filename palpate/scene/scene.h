@@ -170,11 +170,17 @@ enum class ToolKind {
     press,  // a round tip that pushes
     drag,   // a spring that pulls one node along
     dent,   // a haptic tip that feels surfaces and dents them in pictures; bodies do not react (2007)
+    touch,  // a haptic tip that feels surfaces, and pushes the bodies that it feels
 };
 
+/// Whether a tool is a haptic hand.
+inline bool feels(ToolKind kind) { return kind == ToolKind::dent || kind == ToolKind::touch; }
+
 inline std::span<const Named<ToolKind>> names(ToolKind) {
-    static constexpr Named<ToolKind> all[] = {
-        {ToolKind::press, "press"}, {ToolKind::drag, "drag"}, {ToolKind::dent, "dent"}};
+    static constexpr Named<ToolKind> all[] = {{ToolKind::press, "press"},
+                                              {ToolKind::drag, "drag"},
+                                              {ToolKind::dent, "dent"},
+                                              {ToolKind::touch, "touch"}};
     return all;
 }
 
@@ -182,12 +188,13 @@ inline std::span<const Named<ToolKind>> names(ToolKind) {
 struct ToolRecipe {
     std::string name;
     ToolKind kind = ToolKind::press;
-    std::string device = "script";  // for a dent: the name of a device that follows a path (touch/drivers.h)
-    float radius = 0.01f;           // m; for a drag only the size of the drawing
-    float stiffness = 400;          // N/m, see Press and NodePush; 50 for a drag
-    Path path;                      // s, m; a file of rows or the rows themselves
+    std::string device =
+        "script";  // for a dent or a touch: the name of a device that follows a path (touch/drivers.h)
+    float radius = 0.01f;   // m; for a drag only the size of the drawing
+    float stiffness = 400;  // N/m, see Press and NodePush; 50 for a drag
+    Path path;              // s, m; a file of rows or the rows themselves
     vec3 colour = vec3(0.25f, 0.45f, 0.75f);
-    // ---- for a press or a dent ----
+    // ---- for a press, a dent or a touch ----
     /// If given, the path starts where the tip, moved from this point ...
     std::optional<vec3> from;
     /// ... in this direction, first touches a surface; the path's positions are relative to that place.

@@ -12,13 +12,14 @@ namespace {
 // What acts on each body from `time` seconds into a call on, with memory of its own.
 class OneSlice {
  public:
-    OneSlice(const Acts& acts, std::size_t bodies, double time, double left)
+    OneSlice(const Acts& acts, std::span<const Press> more, std::size_t bodies, double time, double left)
         : presses_(acts.presses.begin(), acts.presses.end()),
           pushes_(bodies),
           moves_(bodies),
           bodies_(bodies) {
         const auto t = float(time);
         for (Press& press : presses_) press.centre += t * press.velocity;
+        presses_.insert(presses_.end(), more.begin(), more.end());
         for (const auto& [body, push] : acts.pushes) {
             pushes_[body].push_back(push);
             pushes_[body].back().to += t * push.velocity;
@@ -82,12 +83,18 @@ WorldStats World::step(double seconds, const Acts& acts) {
     const int slices = steps_within(seconds, slice_);
     const double length = seconds / slices;
     for (int s = 0; s < slices; ++s) {
-        const OneSlice slice(acts, count(), s * length, (slices - s) * length);
+        std::vector<Press> more;
+        if (acts.press_in_slice) more = acts.press_in_slice(s * length, length, slice_reactions_);
+        slice_reactions_.assign(more.size(), dvec3(0));
+        const OneSlice slice(acts, more, count(), s * length, (slices - s) * length);
         for (std::size_t b = 0; s == 0 && b < count(); ++b) solvers_[b]->steps_for(length, slice.on(b));
         for (std::size_t b = 0; b < count() && !stats.diverged; ++b) {
             Solver& solver = *solvers_[b];
-            const Stats now = s == 0 ? solver.step(length, slice.on(b)) : solver.go_on(length, slice.on(b));
+            Stats now = s == 0 ? solver.step(length, slice.on(b)) : solver.go_on(length, slice.on(b));
             if (now.diverged) stats.diverged = b;
+            for (std::size_t p = 0; p < more.size() && !now.diverged; ++p)
+                slice_reactions_[p] += now.reactions[acts.presses.size() + p];
+            now.reactions.resize(acts.presses.size());
             ::palpate::add(stats.bodies[b], now);
         }
         if (!stats.diverged) continue;

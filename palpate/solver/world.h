@@ -2,6 +2,7 @@
 #include "palpate/base/team.h"
 #include "palpate/solver/solver.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,14 +27,19 @@ struct Acts {
     std::span<const BodyMove> moves = {};
     std::span<const Motion> colliders = {};  // as in Influences
     vec3 wind = vec3(0);                     // m/s
+    /// Called before each slice, if given, `at` seconds after the call began: what presses besides for the
+    /// next `seconds`. Here hands answer that feel the bodies where they are now. `reactions`: N s, to each
+    /// of the presses that it returned for the slice before, in this call or the last.
+    std::function<std::vector<Press>(double at, double seconds, std::span<const dvec3> reactions)>
+        press_in_slice = {};
 };
 
 /// What one call of World::step did.
 struct WorldStats {
     std::vector<Stats> bodies;
     std::optional<std::size_t> diverged;  // the body that blew up; then all are as they were before
-    std::vector<dvec3> reactions;         // N s, one a press, of all bodies together: as in Stats
-    std::vector<dvec3> pushes;            // N s, one a push
+    std::vector<dvec3> reactions;  // N s, one of Acts::presses each, of all bodies together: as in Stats
+    std::vector<dvec3> pushes;     // N s, one a push
 };
 
 /// Bodies that move together: in common slices of time, on one team of threads.
@@ -75,6 +81,7 @@ class World {
     Team& team_;
     const double slice_;
     std::vector<std::unique_ptr<Solver>> solvers_;
+    std::vector<dvec3> slice_reactions_;  // N s, to what pressed in the last slice alone
 };
 
 }  // namespace palpate

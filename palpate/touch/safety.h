@@ -103,6 +103,9 @@ class Safety {
     Held held() const;
     Held last_reason() const { return reason_; }
 
+    /// Of the ramp at the last call: the part of the wanted force that acts, 0 to 1, before all limits.
+    double gain() const { return gain_; }
+
     double peak_force() const { return force_.peak; }  // N, at the device
     const Warmth& warmth() const { return warmth_; }
 

@@ -109,12 +109,12 @@ void Touch::begin_anew() noexcept {
     begins_anew_ = true;
 }
 
-void Touch::feel(Patch patch) {
+void Touch::feel(Patch patch, Simulated simulated) {
     if (patch.surfaces() > settings_.feels.size())
         throw Error(fmt::format("{} surfaces, but only {} feels", patch.surfaces(), settings_.feels.size()),
                     spec_.name, "give TouchSettings::feels one entry for each");
-    patches_.draft() = std::move(patch);
-    patches_.publish();
+    surroundings_.draft() = {std::move(patch), simulated};
+    surroundings_.publish();
 }
 
 bool Touch::tick(double now, double* proxy_seconds) noexcept {
@@ -132,7 +132,9 @@ bool Touch::tick(double now, double* proxy_seconds) noexcept {
         read = state_;
     was_gone_ = !there;
     bound_stiffness();
-    if (patches_.fetch() || patches_.shown().fastest() > 0) marks_.carry(patches_.shown(), now);
+    is_fresh_ = surroundings_.fetch();
+    if (is_fresh_ || surroundings_.shown().patch.fastest() > 0)
+        marks_.carry(surroundings_.shown().patch, now);
     const dvec3 want = turned_slowly(wanted(now, proxy_seconds), std::min(seconds, 0.01));
     const Contact* most = proxy_.deepest();
     if (most) touched_ = {most->surface, most->triangle, most->weights};
@@ -236,11 +238,27 @@ dvec3 Touch::wanted(double now, double* proxy_seconds) {
     if (!knows_place_) return dvec3(0);
     const double start = proxy_seconds ? thread_seconds() : 0;
     const dvec3 hand = state_.pose.place;
-    const double pushed = proxy_.follow(patches_.shown(), now, hand, friction_);
+    const double pushed = proxy_.follow(surroundings_.shown().patch, now, hand, friction_);
     if (proxy_seconds) *proxy_seconds = thread_seconds() - start;
     if (pushed > new_settings_.shown().surprise) safety_.let_go(Held::pushed);
     const Contact* most = proxy_.deepest();
-    return most ? force(proxy_, hand, velocity_, feels_, marks_.on(std::size_t(most->surface))) : dvec3(0);
+    const dvec3 penalty =
+        most ? force(proxy_, hand, velocity_, feels_, marks_.on(std::size_t(most->surface))) : dvec3(0);
+    return with_load(penalty, most);
+}
+
+// Simulated surfaces and the coupling are two springs in series: from what the surfaces did to the hand when
+// they were where the patch shows them, the force changes as the penalty does, but less. It never pulls.
+dvec3 Touch::with_load(dvec3 penalty, const Contact* contact) {
+    const Simulated& simulated = surroundings_.shown().simulated;
+    const bool soft = contact && std::size_t(contact->surface) < simulated.surfaces;
+    if (is_fresh_) at_patch_ = soft ? penalty : dvec3(0);
+    const double gain = safety_.gain();
+    const dvec3 load = gain > 0 ? simulated.load / gain : dvec3(0);
+    if (!soft) return penalty + load;
+    const double stiffness = feels_[std::size_t(contact->surface)].stiffness;
+    const dvec3 all = load + (penalty - at_patch_) / (1 + stiffness * simulated.compliance);
+    return glm::dot(all, contact->normal) > 0 ? all : dvec3(0);
 }
 
 // A low-pass filter on the direction of the force: without it one would feel the edges of a coarse mesh.
@@ -275,6 +293,7 @@ void Touch::publish(double now) {
     published_.force = wrench_.force;
     published_.held = safety_.held();
     published_.last_reason = safety_.last_reason();
+    published_.gain = float(safety_.gain());
     published_.buttons = state_.buttons;
     published_.placed = state_.placed;
     published_.warmth = safety_.warmth();

@@ -29,6 +29,15 @@ struct TouchSettings {
                                       // over an edge
 };
 
+/// What a hand feels of surfaces that something simulates, and that therefore answer only now and then.
+struct Simulated {
+    std::size_t surfaces = 0;  // so many of a patch's, the first
+    /// N, on the hand: what they did to it when they were where the patch shows them. They were pressed with
+    /// Felt::gain of the stiffness, so the ramp does not weaken it once more.
+    dvec3 load = dvec3(0);
+    double compliance = 0;  // m/N: so far they yield to more than that until the next patch
+};
+
 /// The state of a touch at its last tick.
 struct Felt {
     double time = 0;                   // s
@@ -39,6 +48,8 @@ struct Felt {
     float depth = 0;                   // m, how deep it presses, below lasting dents
     Held held = Held::waiting;         // whether and why the force is reduced,
     Held last_reason = Held::waiting;  // and why it was last let go
+    float gain =
+        0;  // of the ramp, 0 to 1: what simulates a surface presses it with this part of the stiffness
     unsigned buttons = 0;
     unsigned placed = 0;
     Warmth warmth = {};  // of the device's motors
@@ -72,8 +83,10 @@ class Touch {
     void set(TouchSettings settings);
 
     /// Sets what the hand can touch from now on. Call it whenever surfaces have moved; once if they do not
-    /// move. Throws Error if it has more surfaces than there are feels.
-    void feel(Patch patch);
+    /// move. A surface that nothing simulates pushes with the full stiffness of its Feel; of the others the
+    /// hand feels the load, and the softer for their compliance what has changed since the patch. Throws
+    /// Error if it has more surfaces than there are feels.
+    void feel(Patch patch, Simulated simulated = {});
 
     /// The newest state.
     Felt felt() const { return felt_.load(); }
@@ -123,6 +136,7 @@ class Touch {
     void take_sample(const DeviceState& read);
     void bound_stiffness();
     dvec3 wanted(double now, double* proxy_seconds);
+    dvec3 with_load(dvec3 penalty, const Contact* contact);
     dvec3 turned_slowly(dvec3 wanted, double seconds);
     void leave_marks();
     void push(double now, double seconds);
@@ -137,7 +151,13 @@ class Touch {
     std::vector<Friction> friction_;
     Proxy proxy_;
     Safety safety_;
-    TripleBuffer<Patch> patches_;
+    struct Surroundings {
+        Patch patch;
+        Simulated simulated;
+    };
+    TripleBuffer<Surroundings> surroundings_;
+    bool is_fresh_ = false;      // whether the patch came since the last tick
+    dvec3 at_patch_ = dvec3(0);  // N: the penalty force on simulated surfaces at the first tick of the patch
     std::atomic<double> lost_ = 0;  // s, of the settings, for the watchdog
     DeviceState state_ = {};        // the newest valid sample
     bool knows_place_ = false;

@@ -415,5 +415,88 @@ TEST(Play, AMovingBodyIsFeltToo) {
     for (double depth : report.tools[0].indentation) EXPECT_TRUE(std::isfinite(depth));
 }
 
+// A block that a tip of that kind presses by 5 mm, and that comes to rest.
+Report press_by(const std::string& tool, const std::string& body = "", const std::string& simulation = "") {
+    return run(
+        scene("[simulation]\nduration = 2.5\n" + simulation +
+              "[[body]]\nname = \"block\"\ndims = [11, 7, 11]\nspacing = 0.006\n"
+              "youngs_modulus = 4000\ndensity = 1000\ndamping = 10\npin = { below = 0 }\n" +
+              body + "[[tool]]\nradius = 0.012\n" + tool +
+              "from = [0.03, 0.3, 0.03]\n"
+              "path = [[0, 0, 0.003, 0], [1.2, 0, 0.003, 0], [1.5, 0, -0.005, 0], [3, 0, -0.005, 0]]\n"),
+        {});
+}
+
+// On a script it feels what a press of the same size and stiffness is pushed back with, at rest and on the
+// way; an arm yields to it.
+TEST(Play, AHandFeelsTheBodyThatItPresses) {
+    const std::string touch = "kind = \"touch\"\n", feel = "touch = { stiffness = 500 }\n";
+    const Report pressed = press_by("kind = \"press\"\nstiffness = 500\n");
+    const double at_rest = pressed.tools[0].force.back();
+    EXPECT_GT(at_rest, 0.05);
+    for (const char* backend : {"cpu", "reference"}) {
+        const Report felt = press_by(touch, feel, std::string("backend = \"") + backend + "\"\n");
+        EXPECT_LE(std::abs(felt.tools[0].force.back() / at_rest - 1), 0.002) << backend;
+        EXPECT_LE(std::abs(felt.tools[0].indentation.back() / pressed.tools[0].indentation.back() - 1), 0.01);
+        for (std::size_t i = 84; i < felt.tools[0].time.size(); ++i)  // from when its force has ramped up
+            EXPECT_LE(std::abs(felt.tools[0].force[i] - pressed.tools[0].force[i]), 0.05 * at_rest) << i;
+        EXPECT_EQ(felt.bodies[0].inverted_cells, 0u);
+    }
+    const Report arm = press_by(touch + "device = \"hand\"\n", feel);
+    EXPECT_LE(arm.tools[0].force.back(), 0.999 * at_rest);
+    EXPECT_GE(arm.tools[0].force.back(), 0.5 * at_rest);
+    const auto& last = arm.tools[0].force;
+    EXPECT_LE(std::abs(last[last.size() - 20] / last.back() - 1), 0.01);  // it stands still
+}
+
+// What the hand has felt, the body has got, from the first moment of the ramp on.
+TEST(Play, AHandGivesABodyTheMomentumThatItFeels) {
+    const Scene floating = scene(
+        "[simulation]\nduration = 1.5\ngravity = [0, 0, 0]\n"
+        "[[body]]\nname = \"block\"\ndims = [9, 5, 9]\nspacing = 0.006\nyoungs_modulus = 4000\n"
+        "density = 1000\ntouch = { stiffness = 500 }\n"
+        "[[tool]]\nkind = \"touch\"\nradius = 0.01\nfrom = [0.024, 0.3, 0.024]\n"
+        "path = [[0, 0, 0.001, 0], [0.2, 0, 0.001, 0], [1.2, 0, -0.05, 0], [1.4, 0, 0.01, 0], [2, 0, 0.01, "
+        "0]]\n");
+    const Models made = build(floating);
+    Report report;
+    Play play(floating, made, report);
+    double felt = 0, got = 0;  // N s
+    for (int frame = 0; frame < 90; ++frame) {
+        ASSERT_TRUE(play.advance(frame * frame_seconds, frame_seconds));
+        felt += report.tools[0].force.back() * frame_seconds;
+        if (frame % 10 != 9) continue;
+        got = 0;
+        const State state = play.states()[0];
+        const Body& body = made.models[0].body;
+        for (std::size_t i = 0; i < body.count(); ++i)
+            got -= state.velocities[i].y / double(body.inverse_mass[i]);
+        // The last slice is felt in the next.
+        EXPECT_LE(std::abs(felt - got), 1e-3 * felt + report.tools[0].force.back() * 0.0011) << frame;
+    }
+    EXPECT_GT(got, 0.001);
+    EXPECT_LE(std::abs(felt / got - 1), 1e-3);
+}
+
+// It dents what nothing simulates, and that alone.
+TEST(Play, AHandDentsOnlyWhatStandsStill) {
+    Scratch scratch;
+    Scene standing = felt_scene(scratch, "{ stiffness = 300 }", "script");
+    standing.tools[0].kind = ToolKind::touch;
+    const Report report = run(standing, {});
+    EXPECT_LE(std::abs(report.tools[0].largest_force - 300 * 0.004), 0.01 * 300 * 0.004);
+    const Scene soft = scene(
+        "[[body]]\nname = \"block\"\ndims = [9, 5, 9]\nspacing = 0.006\n"
+        "youngs_modulus = 4000\ndensity = 1000\npin = { below = 0 }\n"
+        "[[tool]]\nkind = \"touch\"\nradius = 0.01\nfrom = [0.024, 0.3, 0.024]\n"
+        "path = [[0, 0, 0.002, 0], [1.1, 0, 0.002, 0], [1.3, 0, -0.004, 0], [3, 0, -0.004, 0]]\n");
+    const Models made = build(soft);
+    Report of_soft;
+    Play play(soft, made, of_soft);
+    for (int frame = 0; frame < 100; ++frame) ASSERT_TRUE(play.advance(frame * frame_seconds, frame_seconds));
+    EXPECT_GT(of_soft.tools[0].force.back(), 0.02);
+    EXPECT_TRUE(play.dents(0).empty());
+}
+
 }  // namespace
 }  // namespace palpate

@@ -306,6 +306,9 @@ touch = { stiffness = 250, damping = 0.5, friction = 0.1, width = 0.004, yield =
     expect_words(refusal(small + "touch = { friction = 0.1, sliding = 0.2 }\n"), {"sliding", "friction"});
     expect_words(refusal(small + "touch = { stifness = 3 }\n"), {"stifness", "\"stiffness\""});
     expect_words(refusal(small + dent + "stiffness = 100\n"), {"stiffness", "dent", "touch"});
+    const std::string touch = "[[tool]]\nkind = \"touch\"\n" + path;
+    EXPECT_EQ(parse(small + touch + "device = \"hand\"\n").tools[0].kind, ToolKind::touch);
+    expect_words(refusal(small + touch + "stiffness = 100\n"), {"stiffness", "touch"});
     expect_words(refusal(small + dent + "near = [0, 0, 0]\n"), {"near", "dent"});
     expect_words(refusal(small + "[[tool]]\ndevice = \"hand\"\n" + path), {"hand", "press"});
     expect_words(refusal(small + dent + "shaft = -1\n"), {"shaft"});

@@ -76,6 +76,36 @@ TEST(World, GoesOnInSlices) {
     EXPECT_GT(glm::length(one.pushes[0]), 1e-4);
 }
 
+// What presses slice by slice is asked anew before each, and told what the bodies did to it.
+TEST(World, AsksWhatPressesBeforeEachSlice) {
+    const Body body = pinned_box();
+    const Press tip{.centre = vec3(0.025f, 0.045f, 0.015f), .velocity = vec3(0, -0.2f, 0), .stiffness = 50};
+    World at_once(on_cpu, nullptr, nullptr, 0.002), asked(on_cpu, nullptr, nullptr, 0.002);
+    for (World* world : {&at_once, &asked}) world->add(body);
+    const WorldStats all = at_once.step(0.01, {.presses = {&tip, 1}});
+    std::vector<double> times;
+    dvec3 sum(0);
+    const Acts acts{.press_in_slice = [&](double at, double seconds, std::span<const dvec3> reactions) {
+        EXPECT_LE(std::abs(seconds - 0.002), 1e-12);
+        EXPECT_EQ(reactions.size(), times.empty() ? 0u : 1u);
+        for (dvec3 reaction : reactions) sum += reaction;
+        times.push_back(at);
+        Press now = tip;
+        now.centre += float(at) * tip.velocity;
+        return std::vector{now};
+    }};
+    EXPECT_TRUE(asked.step(0.01, acts).reactions.empty());
+    ASSERT_EQ(times.size(), 5u);
+    expect_same_bits(asked.save()[0], at_once.save()[0]);
+    // The last slice is told to the next call.
+    asked.step(0.002, {.press_in_slice = [&](double, double, std::span<const dvec3> reactions) {
+                   sum += reactions[0];
+                   return std::vector<Press>();
+               }});
+    EXPECT_GT(glm::length(sum), 1e-4);
+    EXPECT_LE(glm::distance(sum, all.reactions[0]), 1e-12);
+}
+
 // Whoever blows up, in whichever slice: then all are as they were, to the bit.
 TEST(World, GoesOnWithAllOrNone) {
     for (const double slice : {0.01, 0.001})

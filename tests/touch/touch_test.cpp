@@ -130,6 +130,31 @@ TEST(Touch, AHandComesToRestWhereItsForceIsTheWalls) {
     }
 }
 
+// Of a simulated surface the load, from the first tick of a patch on; after that as two springs in series;
+// never a pull.
+TEST(Touch, OfASimulatedSurfaceItFeelsTheLoad) {
+    const Mesh mesh = slab();
+    const float deep = radius - 0.002f;
+    Scene1 s(std::make_unique<Script>(path({{0, {0, 0.01f, 0}},
+                                            {1.2, {0, 0.01f, 0}},
+                                            {1.5, {0, deep, 0}},
+                                            {2, {0, deep, 0}},
+                                            {2.1, {0, deep - 0.001f, 0}},
+                                            {2.5, {0, deep - 0.001f, 0}},
+                                            {2.6, {0, radius - 1e-4f, 0}}})),
+             soft());
+    s.touch->feel(all_of(mesh), {.surfaces = 1});
+    s.until(1.9);
+    const double compliance = 0.004;
+    s.touch->feel(all_of(mesh), {.surfaces = 1, .load = {0, 0.25, 0}, .compliance = compliance});
+    s.until(1.95);
+    EXPECT_LE(std::abs(s.device->written.y - 0.25), 1e-4);
+    s.until(2.4);
+    EXPECT_LE(std::abs(s.device->written.y - (0.25 + 300 * 0.001 / (1 + 300 * compliance))), 1e-3);
+    s.until(2.8);
+    EXPECT_EQ(s.device->written, vec3(0));
+}
+
 TEST(Touch, AStiffWallIsNoStifferThanTheDeviceCanHold) {
     TouchSettings settings = soft();
     settings.feels[0].stiffness = 1e6;
