@@ -1,37 +1,25 @@
 #include "palpate/body/patch.h"
 
 #include "palpate/base/error.h"
-#include "palpate/mesh/triangle.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace palpate {
 namespace {
 
-// A conservative test: by bounding boxes, and then by the bounding sphere of the triangle.
-bool comes_near(const Touchable& surface, uvec3 t, vec3 centre, float radius) {
-    const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
-    const vec3 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
-    if (!glm::all(glm::lessThanEqual(low, centre + radius)) ||
-        !glm::all(glm::greaterThanEqual(high, centre - radius)))
-        return false;
-    const vec3 middle = (a + b + c) / 3.0f;
-    const float size =
-        std::max({glm::distance(a, middle), glm::distance(b, middle), glm::distance(c, middle)});
-    return !(glm::distance(middle, centre) > radius + size);
-}
+constexpr float margin = 0.25f;    // of the radius, by which a look goes beyond it
+constexpr float rounding = 1e-6f;  // of lengths, and more than floats round them
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
-void check(const Touchable& surface) {
-    const std::size_t count = surface.positions.size();
-    if (!surface.velocities.empty() && surface.velocities.size() != count)
-        throw Error("a number of velocities that differs from that of the vertices", "a surface to touch",
-                    "give one for each, or none");
-    for (uvec3 t : surface.triangles)
-        if (t.x >= count || t.y >= count || t.z >= count)
-            throw Error("a triangle that refers to missing vertices", "a surface to touch",
-                        "use indices of its own positions");
+// On which sides of a box a point lies, one bit for each: a triangle whose corners share one is outside.
+// What is not a number lies on all of them.
+std::uint8_t sides(vec3 p, vec3 low, vec3 high) {
+    return std::uint8_t((p.x >= low.x ? 0 : 1) | (p.x <= high.x ? 0 : 2) | (p.y >= low.y ? 0 : 4) |
+                        (p.y <= high.y ? 0 : 8) | (p.z >= low.z ? 0 : 16) | (p.z <= high.z ? 0 : 32));
 }
 
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -42,63 +30,221 @@ vec3 sane(vec3 velocity) {
     return speed > Patch::fastest_guess ? Patch::fastest_guess / speed * velocity : velocity;
 }
 
+// Whether the bounding sphere of a triangle comes within `radius` of `centre`.
+bool comes_near(vec3 a, vec3 b, vec3 c, vec3 centre, float radius) {
+    const vec3 middle = (a + b + c) / 3.0f;
+    const float size =
+        std::max({glm::distance(a, middle), glm::distance(b, middle), glm::distance(c, middle)});
+    return !(glm::distance(middle, centre) > radius + size);
+}
+
+// The numbers of the triangles with finite corners that may come within `radius` of `centre`.
+std::vector<int> near(const Touchable& surface, vec3 centre, float radius) {
+    const std::size_t count = surface.positions.size();
+    std::vector<std::uint8_t> outside(count);
+    for (std::size_t i = 0; i < count; ++i)
+        outside[i] = sides(surface.positions[i], centre - radius, centre + radius);
+    std::vector<int> found;
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+        const uvec3 t = surface.triangles[i];
+        if (t.x >= count || t.y >= count || t.z >= count)
+            throw Error("a triangle that refers to missing vertices", "a surface to touch",
+                        "use indices of its own positions");
+        if (outside[t.x] & outside[t.y] & outside[t.z]) continue;
+        const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
+        if (is_finite(a) && is_finite(b) && is_finite(c) && comes_near(a, b, c, centre, radius))
+            found.push_back(int(i));
+    }
+    return found;
+}
+
+// The longest of the ways between these positions; one that is not a number counts as none.
+float longest_way(std::span<const vec3> from, std::span<const vec3> to) {
+    float squared = 0;
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        const vec3 way = to[i] - from[i];
+        squared = std::max(squared, glm::dot(way, way));
+    }
+    return std::sqrt(squared);
+}
+
+// m: of all boxes along all axes.
+double total_size(const std::vector<Tree::Node>& nodes) {
+    vec3 total(0);
+    for (const Tree::Node& node : nodes) total += node.high - node.low;
+    return double(total.x) + total.y + total.z;
+}
+
 }  // namespace
 
 Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, double time)
+    : Patch(faces_near(surfaces, centre, radius), surfaces, centre, radius, time) {}
+
+Patch::Patch(std::shared_ptr<const Faces> faces, std::span<const Touchable> surfaces, vec3 centre,
+             float radius, double time)
     : centre_(centre),
       radius_(radius),
       time_(time),
       surfaces_(surfaces.size()),
-      mesh_(std::make_unique<Mesh>()) {
+      faces_(std::move(faces)),
+      nodes_(faces_->nodes),
+      positions_(faces_->vertices.size()),
+      velocities_(faces_->vertices.size()) {
+    gather(surfaces);
+    enclose();
+}
+
+std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable> surfaces, vec3 centre,
+                                                      float radius) {
+    Faces faces;
+    Mesh mesh;
+    std::vector<From> from;
+    std::vector<Index> place;  // of a surface's vertices, in the mesh
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         const Touchable& surface = surfaces[s];
-        check(surface);
-        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-            const uvec3 triangle = surface.triangles[t];
-            if (!comes_near(surface, triangle, centre, radius)) continue;
-            const bool whole = is_finite(surface.positions[triangle.x]) &&
-                               is_finite(surface.positions[triangle.y]) &&
-                               is_finite(surface.positions[triangle.z]);
-            if (!whole) continue;
-            const auto first = unsigned(mesh_->positions.size());
+        place.assign(surface.positions.size(), none);
+        for (int t : near(surface, centre, radius)) {
+            uvec3 triangle = surface.triangles[std::size_t(t)];
             for (int k = 0; k < 3; ++k) {
-                mesh_->positions.push_back(surface.positions[triangle[k]]);
-                const vec3 v = surface.velocities.empty() ? vec3(0) : surface.velocities[triangle[k]];
-                velocities_.push_back(sane(v));
-                fastest_ = std::max(fastest_, glm::length(velocities_.back()));
+                Index& at = place[triangle[k]];
+                if (at == none) {
+                    at = Index(mesh.positions.size());
+                    mesh.positions.push_back(surface.positions[triangle[k]]);
+                    faces.vertices.push_back({int(s), triangle[k]});
+                }
+                triangle[k] = at;
             }
-            mesh_->triangles.emplace_back(first, first + 1, first + 2);
-            from_.push_back({int(s), int(t), surface.is_sheet});
+            mesh.triangles.push_back(triangle);
+            from.push_back({int(s), t, surface.is_sheet});
         }
     }
-    if (!from_.empty()) tree_ = std::make_unique<Tree>(*mesh_);
+    Tree tree(mesh);
+    faces.nodes = std::move(tree.nodes);
+    faces.sorted.resize(from.size());
+    for (Index face : tree.faces) {
+        faces.sorted[face] = Index(faces.from.size());
+        faces.from.push_back(from[face]);
+        faces.triangles.push_back(mesh.triangles[face]);
+    }
+    return std::make_shared<const Faces>(std::move(faces));
+}
+
+void Patch::gather(std::span<const Touchable> surfaces) {
+    for (const Touchable& surface : surfaces)
+        if (!surface.velocities.empty() && surface.velocities.size() != surface.positions.size())
+            throw Error("a number of velocities that differs from that of the vertices", "a surface to touch",
+                        "give one for each, or none");
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        const auto [s, vertex] = faces_->vertices[i];
+        const Touchable& surface = surfaces[std::size_t(s)];
+        positions_[i] = surface.positions[vertex];
+        if (!surface.velocities.empty()) velocities_[i] = sane(surface.velocities[vertex]);
+        fastest_ = std::max(fastest_, glm::length(velocities_[i]));
+    }
+}
+
+void Patch::enclose() {
+    for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
+        Tree::Node& node = nodes_[i];
+        Bounds box;
+        if (node.second == 0) {
+            for (Index face = node.first; face < node.first + node.count; ++face)
+                for (int k = 0; k < 3; ++k) box.include(positions_[faces_->triangles[face][k]]);
+        } else {
+            const Tree::Node &first = nodes_[i + 1], &second = nodes_[node.second];
+            box = {glm::min(first.low, second.low), glm::max(first.high, second.high)};
+        }
+        node.low = box.low, node.high = box.high;
+    }
 }
 
 double Patch::age_at(double time) const { return std::clamp(time - time_, 0.0, longest_guess); }
 
 std::optional<Patch::Face> Patch::find(int surface, int triangle, double time) const {
-    const auto before = [](const From& from, std::pair<int, int> wanted) {
-        return std::pair(from.surface, from.triangle) < wanted;
-    };
+    if (!faces_) return std::nullopt;
     const std::pair wanted(surface, triangle);
-    const auto found = std::lower_bound(from_.begin(), from_.end(), wanted, before);
-    if (found == from_.end() || std::pair(found->surface, found->triangle) != wanted) return std::nullopt;
-    return face_at(Index(found - from_.begin()), time);
+    const auto key = [&](Index face) {
+        return std::pair(faces_->from[face].surface, faces_->from[face].triangle);
+    };
+    const auto found = std::lower_bound(faces_->sorted.begin(), faces_->sorted.end(), wanted,
+                                        [&](Index face, auto other) { return key(face) < other; });
+    if (found == faces_->sorted.end() || key(*found) != wanted) return std::nullopt;
+    return face_at(*found, time);
 }
 
 Patch::Face Patch::face_at(Index face, double time) const {
-    const From& from = from_[face];
+    const From& from = faces_->from[face];
     const double age = age_at(time);
     const bool guesses = time - time_ <= longest_guess;  // whether it is extrapolated; after that it stands
                                                          // still
     Face found{{}, {}, from.surface, from.triangle, from.is_sheet};
     for (int k = 0; k < 3; ++k) {
-        const unsigned corner = mesh_->triangles[face][k];
+        const unsigned corner = faces_->triangles[face][k];
         const dvec3 velocity(velocities_[corner]);
         found.velocities[k] = guesses ? velocity : dvec3(0);
-        found.corners[k] = dvec3(mesh_->positions[corner]) + age * velocity;
+        found.corners[k] = dvec3(positions_[corner]) + age * velocity;
     }
     return found;
+}
+
+// ---- one after another ----
+
+Patch PatchMaker::next(std::span<const Touchable> surfaces, vec3 centre, float radius, double time) {
+    if (knows(surfaces, centre, radius)) {
+        Patch patch(faces_, surfaces, centre, radius, time);
+        if (is_sound(patch)) return patch;
+    }
+    look(surfaces, centre, radius);
+    return Patch(faces_, surfaces, centre, radius, time);
+}
+
+bool PatchMaker::is_same(std::span<const Touchable> surfaces) const {
+    const auto same = [](const Seen& seen, const Touchable& surface) {
+        return seen.triangles.data() == surface.triangles.data() &&
+               seen.triangles.size() == surface.triangles.size() &&
+               seen.watched.size() == surface.positions.size() && seen.is_sheet == surface.is_sheet;
+    };
+    return std::equal(seen_.begin(), seen_.end(), surfaces.begin(), surfaces.end(), same);
+}
+
+// Whether all triangles that come within `radius` of `centre` are among the faces, for a point of another one
+// has not moved farther than all vertices that are watched.
+bool PatchMaker::knows(std::span<const Touchable> surfaces, vec3 centre, float radius) const {
+    if (!faces_ || !is_same(surfaces)) return false;
+    float move = 0;
+    for (std::size_t s = 0; s < seen_.size(); ++s)
+        move = std::max(move, longest_way(seen_[s].watched, surfaces[s].positions));
+    return std::isfinite(move) && glm::distance(centre, centre_) + move + radius <= reach_;
+}
+
+// Whether all positions are finite and the boxes are not much larger than they need be.
+bool PatchMaker::is_sound(const Patch& patch) const {
+    return std::all_of(patch.positions_.begin(), patch.positions_.end(), is_finite) &&
+           total_size(patch.nodes_) <= 2 * total_size(faces_->nodes);
+}
+
+void PatchMaker::look(std::span<const Touchable> surfaces, vec3 centre, float radius) {
+    const float reach = (1 + margin) * radius;
+    faces_ = Patch::faces_near(surfaces, centre, reach);
+    centre_ = centre;
+    reach_ = (1 - rounding) * reach - rounding * glm::length(centre);
+    seen_.resize(surfaces.size());
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+        seen_[s].triangles = surfaces[s].triangles;
+        seen_[s].is_sheet = surfaces[s].is_sheet;
+        watch(surfaces[s].positions, seen_[s].watched);
+    }
+}
+
+// A vertex within reach belongs to known triangles only, so it need not be watched: not a number stands for
+// it. One that is not a number may come back anywhere: it counts as infinitely far away.
+void PatchMaker::watch(std::span<const vec3> positions, std::vector<vec3>& watched) const {
+    watched.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const vec3 p = positions[i], off = p - centre_;
+        const bool is_within = glm::dot(off, off) < reach_ * reach_;
+        watched[i] = is_within ? vec3(nothing) : glm::mix(p, vec3(infinity), glm::isnan(p));
+    }
 }
 
 }  // namespace palpate

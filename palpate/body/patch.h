@@ -55,7 +55,7 @@ class Patch {
     /// The number of Touchables.
     std::size_t surfaces() const { return surfaces_; }
 
-    std::size_t size() const { return from_.size(); }
+    std::size_t size() const { return faces_ ? faces_->from.size() : 0; }
 
     /// A triangle of a surface at a time, if it is in the patch.
     std::optional<Face> find(int surface, int triangle, double time) const;
@@ -71,27 +71,49 @@ class Patch {
     }
 
  private:
+    friend class PatchMaker;
+
     struct From {
         int surface, triangle;
         bool is_sheet;
     };
+    struct Vertex {
+        int surface;
+        unsigned vertex;
+    };
+    // The triangles of a patch, wherever they are. Patches made one after the other share them.
+    struct Faces {
+        std::vector<Tree::Node> nodes;  // a bounding volume hierarchy over them; their boxes, at first
+        std::vector<uvec3> triangles;   // indices into `vertices`; ordered by node
+        std::vector<From> from;         // one for each triangle
+        std::vector<Index> sorted;      // they, with `from` in increasing order
+        std::vector<Vertex> vertices;
+    };
+
+    // Of those with finite positions.
+    static std::shared_ptr<const Faces> faces_near(std::span<const Touchable> surfaces, vec3 centre,
+                                                   float radius);
+    Patch(std::shared_ptr<const Faces> faces, std::span<const Touchable> surfaces, vec3 centre, float radius,
+          double time);
+    void gather(std::span<const Touchable> surfaces);
+    void enclose();
 
     double age_at(double time) const;
     Face face_at(Index face, double time) const;
 
     template <class Act>
     void for_each_within(vec3 point, float squared, const Act& act) const {
-        if (!tree_) return;
+        if (nodes_.empty()) return;
         std::array<Index, 64> waiting;  // a tree that is split at medians is never so deep
         std::size_t count = 0;
         waiting[count++] = 0;
         while (count > 0) {
             const Index here = waiting[--count];
-            const Tree::Node& node = tree_->nodes[here];
+            const Tree::Node& node = nodes_[here];
             const vec3 off = glm::max(glm::max(node.low - point, point - node.high), vec3(0));
             if (glm::dot(off, off) > squared) continue;
             if (node.second == 0) {
-                for (Index i = node.first; i < node.first + node.count; ++i) act(tree_->faces[i]);
+                for (Index face = node.first; face < node.first + node.count; ++face) act(face);
                 continue;
             }
             waiting[count++] = node.second;
@@ -104,10 +126,41 @@ class Patch {
     double time_ = 0;
     float fastest_ = 0;  // m/s
     std::size_t surfaces_ = 0;
-    std::unique_ptr<Mesh> mesh_;
-    std::unique_ptr<Tree> tree_;  // a bounding volume hierarchy over that
-    std::vector<vec3> velocities_;
-    std::vector<From> from_;  // of each triangle of the mesh, in increasing order
+    std::shared_ptr<const Faces> faces_;
+    std::vector<Tree::Node> nodes_;             // those of the faces, with present boxes
+    std::vector<vec3> positions_, velocities_;  // of the faces' vertices
+};
+
+/// Makes the patches of a hand, one after another, on surfaces that move little from one to the next. It
+/// looks at all triangles now and then only, and remembers those that come within somewhat more than the
+/// radius; then, until another one can have come within the radius, it takes their new positions.
+class PatchMaker {
+ public:
+    /// Patch(surfaces, centre, radius, time), with some triangles that are farther away. If triangles were
+    /// changed in place, forget() them first.
+    Patch next(std::span<const Touchable> surfaces, vec3 centre = vec3(0),
+               float radius = std::numeric_limits<float>::infinity(), double time = 0);
+
+    void forget() { faces_.reset(); }
+
+ private:
+    // A surface as it was when all of its triangles were looked at.
+    struct Seen {
+        std::span<const uvec3> triangles;
+        bool is_sheet;
+        std::vector<vec3> watched;  // the positions from which vertices may bring other triangles near
+    };
+
+    bool is_same(std::span<const Touchable> surfaces) const;
+    bool knows(std::span<const Touchable> surfaces, vec3 centre, float radius) const;
+    bool is_sound(const Patch& patch) const;
+    void look(std::span<const Touchable> surfaces, vec3 centre, float radius);
+    void watch(std::span<const vec3> positions, std::vector<vec3>& watched) const;
+
+    std::shared_ptr<const Patch::Faces> faces_;  // all that come within reach_ of centre_
+    vec3 centre_ = vec3(0);
+    float reach_ = 0;  // m
+    std::vector<Seen> seen_;
 };
 
 }  // namespace palpate
