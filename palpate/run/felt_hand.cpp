@@ -7,13 +7,14 @@ namespace {
 
 constexpr double shortest = 1e-4, longest = 0.5;  // s: over which a velocity can be measured
 
-// m/s, one for each vertex; empty if unknown.
-std::vector<vec3> velocities(const std::vector<vec3>& from, const std::vector<vec3>& to, double seconds) {
-    std::vector<vec3> speeds;
-    if (from.size() != to.size() || seconds > longest || from == to) return speeds;
+// m/s, one for each vertex; none if unknown.
+void measure(std::vector<vec3>& speeds, const std::vector<vec3>& from, const std::vector<vec3>& to,
+             double seconds) {
+    speeds.clear();
+    if (from.size() != to.size() || seconds > longest || from == to) return;
     speeds.resize(to.size());
-    for (std::size_t i = 0; i < to.size(); ++i) speeds[i] = (to[i] - from[i]) / float(seconds);
-    return speeds;
+    const float rate = float(1 / seconds);
+    for (std::size_t i = 0; i < to.size(); ++i) speeds[i] = rate * (to[i] - from[i]);
 }
 
 }  // namespace
@@ -24,15 +25,16 @@ FeltHand::FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 
 void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, const Simulated& simulated) {
     felt_ = touch_.felt();
     before_.resize(skins.size());
-    std::vector<std::vector<vec3>> speeds;
+    speeds_.resize(skins.size());
+    const double seconds = std::max(time - before_time_, shortest);
     std::vector<Touchable> surfaces;
-    for (const Skin& skin : skins)
-        speeds.push_back(
-            velocities(before_[speeds.size()], skin.positions, std::max(time - before_time_, shortest)));
-    for (std::size_t s = 0; s < skins.size(); ++s)
-        surfaces.push_back({skins[s].positions, *skins[s].triangles, speeds[s], skins[s].is_sheet});
+    for (std::size_t s = 0; s < skins.size(); ++s) {
+        const Skin& skin = skins[s];
+        measure(speeds_[s], before_[s], skin.positions, seconds);
+        surfaces.push_back({skin.positions, *skin.triangles, speeds_[s], skin.is_sheet});
+    }
     const bool ticked = felt_.time > 0;
-    touch_.feel(Patch(surfaces, ticked ? felt_.proxy : start_, reach, time), simulated);
+    touch_.feel(maker_.next(surfaces, ticked ? felt_.proxy : start_, reach, time), simulated);
     for (std::size_t s = 0; s < skins.size(); ++s) before_[s] = skins[s].positions;
     before_time_ = time;
     // The old dents can only be removed once the touch has the new surfaces.
@@ -42,6 +44,7 @@ void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, co
 
 void FeltHand::begin_anew() {
     expect_jump();
+    maker_.forget();
     begins_anew_ = true;
 }
 

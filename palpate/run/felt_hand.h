@@ -42,8 +42,10 @@ class FeltHand {
     Felt felt_ = {};
     vec3 start_;
     bool begins_anew_ = false;
+    PatchMaker maker_;
     std::vector<std::vector<vec3>> before_;  // the last positions of the skins,
     double before_time_ = 0;                 // s, and their time
+    std::vector<std::vector<vec3>> speeds_;  // since the positions before them, m/s
     std::optional<TouchLoop> loop_;          // destroyed first, because it ticks the touch
 };
 
