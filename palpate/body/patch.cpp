@@ -1,6 +1,7 @@
 #include "palpate/body/patch.h"
 
 #include "palpate/base/error.h"
+#include "palpate/mesh/mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +11,10 @@
 namespace palpate {
 namespace {
 
-constexpr float margin = 0.25f;    // of the radius, by which a look goes beyond it
-constexpr float rounding = 1e-6f;  // of lengths, and more than floats round them
+constexpr float margin = 0.25f;    // by which a look goes beyond the radius, as a part of it
+constexpr float rounding = 1e-6f;  // of lengths, relative; floats round less
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+constexpr float unwatched = std::numeric_limits<float>::quiet_NaN();
 
 // On which sides of a box a point lies, one bit for each: a triangle whose corners share one is outside.
 // What is not a number lies on all of them.
@@ -58,12 +59,12 @@ std::vector<int> near(const Touchable& surface, vec3 centre, float radius) {
     return found;
 }
 
-// The longest of the ways between these positions; one that is not a number counts as none.
-float longest_way(std::span<const vec3> from, std::span<const vec3> to) {
+// How far the vertex that has moved most has moved; where one position is not a number, it counts as no move.
+float largest_move(std::span<const vec3> from, std::span<const vec3> to) {
     float squared = 0;
     for (std::size_t i = 0; i < to.size(); ++i) {
-        const vec3 way = to[i] - from[i];
-        squared = std::max(squared, glm::dot(way, way));
+        const vec3 move = to[i] - from[i];
+        squared = std::max(squared, glm::dot(move, move));  // in this order: the first if one is none
     }
     return std::sqrt(squared);
 }
@@ -207,25 +208,26 @@ bool PatchMaker::is_same(std::span<const Touchable> surfaces) const {
     return std::equal(seen_.begin(), seen_.end(), surfaces.begin(), surfaces.end(), same);
 }
 
-// Whether all triangles that come within `radius` of `centre` are among the faces, for a point of another one
-// has not moved farther than all vertices that are watched.
+// Whether all triangles that come within `radius` of `centre` are among the faces: the points of all others
+// were out of reach, and none of them has moved farther than a vertex.
 bool PatchMaker::knows(std::span<const Touchable> surfaces, vec3 centre, float radius) const {
     if (!faces_ || !is_same(surfaces)) return false;
     float move = 0;
     for (std::size_t s = 0; s < seen_.size(); ++s)
-        move = std::max(move, longest_way(seen_[s].watched, surfaces[s].positions));
+        move = std::max(move, largest_move(seen_[s].watched, surfaces[s].positions));
     return std::isfinite(move) && glm::distance(centre, centre_) + move + radius <= reach_;
 }
 
 // Whether all positions are finite and the boxes are not much larger than they need be.
 bool PatchMaker::is_sound(const Patch& patch) const {
     return std::all_of(patch.positions_.begin(), patch.positions_.end(), is_finite) &&
-           total_size(patch.nodes_) <= 2 * total_size(faces_->nodes);
+           total_size(patch.nodes_) <= 2 * size_;
 }
 
 void PatchMaker::look(std::span<const Touchable> surfaces, vec3 centre, float radius) {
     const float reach = (1 + margin) * radius;
     faces_ = Patch::faces_near(surfaces, centre, reach);
+    size_ = total_size(faces_->nodes);
     centre_ = centre;
     reach_ = (1 - rounding) * reach - rounding * glm::length(centre);
     seen_.resize(surfaces.size());
@@ -236,14 +238,14 @@ void PatchMaker::look(std::span<const Touchable> surfaces, vec3 centre, float ra
     }
 }
 
-// A vertex within reach belongs to known triangles only, so it need not be watched: not a number stands for
-// it. One that is not a number may come back anywhere: it counts as infinitely far away.
+// All triangles of a vertex within reach are known, so that it may move as it likes. One that is not a number
+// may come back anywhere, so that it counts as infinitely far away.
 void PatchMaker::watch(std::span<const vec3> positions, std::vector<vec3>& watched) const {
     watched.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const vec3 p = positions[i], off = p - centre_;
         const bool is_within = glm::dot(off, off) < reach_ * reach_;
-        watched[i] = is_within ? vec3(nothing) : glm::mix(p, vec3(infinity), glm::isnan(p));
+        watched[i] = is_within ? vec3(unwatched) : glm::mix(p, vec3(infinity), glm::isnan(p));
     }
 }
 

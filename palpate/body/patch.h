@@ -1,6 +1,5 @@
 #pragma once
 #include "palpate/base/vectors.h"
-#include "palpate/mesh/mesh.h"
 #include "palpate/mesh/tree.h"
 
 #include <array>
@@ -81,12 +80,12 @@ class Patch {
         int surface;
         unsigned vertex;
     };
-    // The triangles of a patch, wherever they are. Patches made one after the other share them.
+    // The triangles of a patch, wherever they are now: what patches share that are made one after another.
     struct Faces {
-        std::vector<Tree::Node> nodes;  // a bounding volume hierarchy over them; their boxes, at first
+        std::vector<Tree::Node> nodes;  // a bounding volume hierarchy over them, with the boxes at first
         std::vector<uvec3> triangles;   // indices into `vertices`; ordered by node
-        std::vector<From> from;         // one for each triangle
-        std::vector<Index> sorted;      // they, with `from` in increasing order
+        std::vector<From> from;         // of each triangle
+        std::vector<Index> sorted;      // all triangles, so that `from` increases
         std::vector<Vertex> vertices;
     };
 
@@ -132,8 +131,8 @@ class Patch {
 };
 
 /// Makes the patches of a hand, one after another, on surfaces that move little from one to the next. It
-/// looks at all triangles now and then only, and remembers those that come within somewhat more than the
-/// radius; then, until another one can have come within the radius, it takes their new positions.
+/// looks at all triangles only now and then, and remembers those that come within somewhat more than the
+/// radius: until another one can have come within the radius, it takes their new positions alone.
 class PatchMaker {
  public:
     /// Patch(surfaces, centre, radius, time), with some triangles that are farther away. If triangles were
@@ -148,7 +147,8 @@ class PatchMaker {
     struct Seen {
         std::span<const uvec3> triangles;
         bool is_sheet;
-        std::vector<vec3> watched;  // the positions from which vertices may bring other triangles near
+        std::vector<vec3> watched;  // positions of the vertices that may bring other triangles near; those
+                                    // of others are not a number
     };
 
     bool is_same(std::span<const Touchable> surfaces) const;
@@ -158,6 +158,7 @@ class PatchMaker {
     void watch(std::span<const vec3> positions, std::vector<vec3>& watched) const;
 
     std::shared_ptr<const Patch::Faces> faces_;  // all that come within reach_ of centre_
+    double size_ = 0;                            // m, of all their boxes
     vec3 centre_ = vec3(0);
     float reach_ = 0;  // m
     std::vector<Seen> seen_;

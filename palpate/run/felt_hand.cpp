@@ -10,8 +10,7 @@ constexpr double shortest = 1e-4, longest = 0.5;  // s: over which a velocity ca
 // m/s, one for each vertex; none if unknown.
 void measure(std::vector<vec3>& speeds, const std::vector<vec3>& from, const std::vector<vec3>& to,
              double seconds) {
-    speeds.clear();
-    if (from.size() != to.size() || seconds > longest || from == to) return;
+    if (from.size() != to.size() || seconds > longest || from == to) return speeds.clear();
     speeds.resize(to.size());
     const float rate = float(1 / seconds);
     for (std::size_t i = 0; i < to.size(); ++i) speeds[i] = rate * (to[i] - from[i]);

@@ -227,6 +227,27 @@ TEST(PatchMaker, LeavesEarlierPatchesAsTheyAre) {
     for (const auto& [key, face] : before) expect_equal(after.at(key), face);
 }
 
+// Its boxes would otherwise overlap more and more.
+TEST(PatchMaker, LooksAnewWhenTrianglesAreMixedUp) {
+    Cloth crumbs;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> part(-0.1f, 0.1f);
+    for (unsigned i = 0; i < 9000; i += 3) crumbs.triangles->push_back({i, i + 1, i + 2});
+    PatchMaker maker;
+    for (int call = 0; call < 3; ++call) {
+        crumbs.positions.clear();
+        for (int i = 0; i < 3000; ++i) {
+            const vec3 p(part(random), part(random), part(random));
+            crumbs.positions.insert(crumbs.positions.end(),
+                                    {p, p + vec3(0.001f, 0, 0), p + vec3(0, 0.001f, 0)});
+        }
+        const Patch patch = maker.next(touchable({crumbs}));
+        int looked_at = 0;
+        patch.for_each_near(dvec3(0), 0.01, 0, [&](const Patch::Face&) { ++looked_at; });
+        EXPECT_LE(looked_at, 100);
+    }
+}
+
 TEST(PatchMaker, LooksAnewAtWhatItForgot) {
     std::vector<Cloth> cloths = {folded(21, 21, vec3(0))};
     PatchMaker maker;
