@@ -213,7 +213,7 @@ void Play::probe(double time, double seconds) {
 // presses nothing, so that reactions keep their places.
 std::vector<Press> Play::press(double time, double seconds, std::span<const dvec3> reactions) {
     mapped_ = false;
-    skins();
+    map_positions();
     std::vector<Press> all;
     for (auto& handle : handles_)
         if (auto* one = std::get_if<Probe>(&handle); one && one->presses()) {
@@ -287,6 +287,17 @@ bool Play::step(double seconds, const Acting& on) {
     }
     stats_ = std::move(stats);
     return true;
+}
+
+// What is felt needs no normals, unless there have never been any.
+void Play::map_positions() {
+    Timed timed(report_.seconds.map);
+    for (std::size_t m = 0; m < world_.count(); ++m)
+        if (skins_[m].normals.empty())
+            deform(made_.models[m].embedding, nodes(m), skins_[m].positions, skins_[m].normals, nullptr,
+                   &world_.team());
+        else
+            deform(made_.models[m].embedding, nodes(m), skins_[m].positions, &world_.team());
 }
 
 void Play::map() const {

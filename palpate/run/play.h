@@ -92,6 +92,7 @@ class Play {
     Acting acting(double time, double seconds, const Interaction& hands);
     bool step(double seconds, const Acting& on);
     void map() const;
+    void map_positions();
     void probe(double time, double seconds);
     std::vector<Press> press(double time, double seconds, std::span<const dvec3> reactions);
     void record(const Acting& on, double time, double seconds);

@@ -16,6 +16,8 @@ constexpr double rate = 1000;   // Hz
 constexpr float beyond = 0.1f;  // m, the radius of the patch of moving surfaces: more than a hand moves in a
                                 // frame
 
+constexpr float in_a_slice = 0.02f;  // m, likewise beyond the tip, for slices of a millisecond or so
+
 int ticks_in(double seconds) { return std::max(1, int(std::ceil(seconds * rate - 1e-6))); }
 
 // Pa, of an elastic half-space: Young's modulus over 1 - Poisson's ratio²; 0 where none is known.
@@ -108,7 +110,7 @@ Press Probe::press(double time, double seconds, dvec3 reaction, const std::vecto
             std::max(simulated.compliance, compliance(model.body, recipe_.radius, seconds));
     const bool ticked = hand_->felt().time > 0;
     const vec3 from = ticked ? vec3(hand_->felt().pose.place) : hand_->start();
-    hand_->feel(skins, time, beyond, simulated);
+    hand_->feel(skins, time, recipe_.radius + in_a_slice, simulated);
     tick(time, seconds);
     const Felt& felt = hand_->felt();
     double stiffness = 0;
