@@ -42,6 +42,8 @@ class Patch {
     static constexpr double longest_guess = 0.05;  // s: three frames. After that the simulation must have
                                                    // stalled
 
+    double time() const { return time_; }  // s, at which it holds
+
     /// The ball outside of which nothing is known.
     dvec3 centre() const { return centre_; }
     double radius() const { return radius_; }

@@ -219,7 +219,7 @@ std::string how_to_ask_less(const Scene& scene, const Report& report) {
     bool presses = false, drags = false;
     for (std::size_t t = 0; t < scene.tools.size() && t < report.tools.size(); ++t) {
         const bool acts = report.tools[t].largest_force > 0;
-        presses |= acts && scene.tools[t].kind == ToolKind::press;
+        presses |= acts && (scene.tools[t].kind == ToolKind::press || scene.tools[t].kind == ToolKind::touch);
         drags |= acts && scene.tools[t].kind == ToolKind::drag;
     }
     if (presses) add("press less hard");
@@ -298,7 +298,8 @@ std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
                             body.name));
         look_at_weight(scene, made, m, notes);
         for (const ToolRecipe& tool : scene.tools)
-            if (tool.kind == ToolKind::press && tool.radius < widest_gap * body.spacing)
+            if ((tool.kind == ToolKind::press || tool.kind == ToolKind::touch) &&
+                tool.radius < widest_gap * body.spacing)
                 notes.push_back(
                     fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
                                 "between the nodes; use more nodes",

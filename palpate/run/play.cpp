@@ -31,11 +31,13 @@ Report::Body describe(const Model& model) {
     return body;
 }
 
-// s: bodies that hands press go on for so long before the hands feel them again.
+// s: bodies that hands press go on for so long before the hands feel them again. In whole steps, if their
+// length is given.
 double slice_for(const Scene& scene) {
     constexpr double felt_slice = 1e-3;
-    return std::ranges::count(scene.tools, ToolKind::touch, &ToolRecipe::kind) > 0 ? felt_slice
-                                                                                   : frame_seconds;
+    if (std::ranges::count(scene.tools, ToolKind::touch, &ToolRecipe::kind) == 0) return frame_seconds;
+    const double step = scene.simulation.step;
+    return step > 0 ? step * std::max(1.0, std::floor(felt_slice / step)) : felt_slice;
 }
 
 // A surface in a cage may be open; every other one except cloth encloses a volume.
@@ -209,18 +211,25 @@ void Play::probe(double time, double seconds) {
             one->advance(time, seconds, skins_, !made_.models.empty());
 }
 
-// What hands do to the bodies that they feel, which have moved since the last slice. One that is not there
-// presses nothing, so that reactions keep their places.
-std::vector<Press> Play::press(double time, double seconds, std::span<const dvec3> reactions) {
-    mapped_ = false;
-    map_positions();
-    std::vector<Press> all;
+// What hands do to the bodies that they feel. One that is not there presses nothing, so that reactions keep
+// their places.
+std::vector<Press> Play::press(double time, double seconds, bool moved, std::span<const dvec3> reactions) {
+    std::vector<Probe*> probes;
     for (auto& handle : handles_)
-        if (auto* one = std::get_if<Probe>(&handle); one && one->presses()) {
-            const dvec3 reaction = all.size() < reactions.size() ? reactions[all.size()] : dvec3(0);
-            all.push_back(one->is_there(time) ? one->press(time, seconds, reaction, skins_, made_.models)
-                                              : Press{.stiffness = 0});
-        }
+        if (auto* one = std::get_if<Probe>(&handle); one && one->presses()) probes.push_back(one);
+    auto is_there = [time](const Probe* one) { return one->is_there(time); };
+    if (moved) mapped_ = false;
+    if (std::ranges::any_of(probes, [&](const Probe* one) { return is_there(one) && !one->has_begun(); }))
+        skins();  // with their normals
+    else if (!mapped_ && std::ranges::any_of(probes, is_there))
+        map_positions();
+    std::vector<Press> all;
+    for (Probe* one : probes) {
+        std::optional<dvec3> reaction;
+        if (all.size() < reactions.size()) reaction = reactions[all.size()];
+        all.push_back(is_there(one) ? one->press(time, seconds, reaction, skins_, world_.count())
+                                    : Press{.stiffness = 0});
+    }
     return all;
 }
 
@@ -228,11 +237,13 @@ bool Play::advance(double time, double seconds, const Interaction& hands) {
     probe(time, seconds);
     const Acting on = acting(time, seconds, hands);
     const double mapping = report_.seconds.map;
+    bool whole = false;
     {
         Timed timed(report_.seconds.simulate);
-        if (!step(seconds, on)) return false;
+        whole = step(seconds, on);
     }
     report_.seconds.simulate -= report_.seconds.map - mapping;  // which has its own time
+    if (!whole) return false;
     mapped_ = false;
     time_ = time + seconds;
     if (!on_gpu(made_.simulation.backend)) map();
@@ -267,7 +278,7 @@ Play::Acting Play::acting(double time, double seconds, const Interaction& hands)
     if (!scene_.wind.empty()) on.wind = position(scene_.wind, time + seconds / 2);
     if (presses_)
         on.press_in_slice = [=, this](double at, double slice, std::span<const dvec3> reactions) {
-            return press(time + at, slice, reactions);
+            return press(time + at, slice, at > 0, reactions);
         };
     return on;
 }

@@ -94,7 +94,7 @@ class Play {
     void map() const;
     void map_positions();
     void probe(double time, double seconds);
-    std::vector<Press> press(double time, double seconds, std::span<const dvec3> reactions);
+    std::vector<Press> press(double time, double seconds, bool moved, std::span<const dvec3> reactions);
     void record(const Acting& on, double time, double seconds);
 
     const Scene& scene_;

@@ -4,7 +4,6 @@
 #include "palpate/touch/drivers.h"
 
 #include <fmt/format.h>
-#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,28 +18,6 @@ constexpr float beyond = 0.1f;  // m, the radius of the patch of moving surfaces
 constexpr float in_a_slice = 0.02f;  // m, likewise beyond the tip, for slices of a millisecond or so
 
 int ticks_in(double seconds) { return std::max(1, int(std::ceil(seconds * rate - 1e-6))); }
-
-// Pa, of an elastic half-space: Young's modulus over 1 - Poisson's ratio²; 0 where none is known.
-double modulus_of_half_space(const Body& body) {
-    if (const TissueCells* cells = tissue_of(body))
-        return double(cells->youngs_modulus) / (1 - double(cells->poisson) * double(cells->poisson));
-    const GridSprings* grid = body.cells.empty() ? nullptr : body.grid();
-    if (!grid) return 0;
-    float stiffest = 0;
-    for (const Link& link : grid->links) stiffest = std::max(stiffest, link.stiffness);
-    return double(stiffest) / (0.4 * double(body.spacing)) / (1 - 1 / 16.0);  // as lattice.h says
-}
-
-// m/N: how far a body yields to a round tip within some seconds. A half-space yields so far to a rigid disc
-// (Sneddon 1965), and what lies under the tip has to be accelerated first.
-double compliance(const Body& body, double radius, double seconds) {
-    double heaviest = 0;  // kg, of a node
-    for (float inverse : body.inverse_mass)
-        if (inverse > 0) heaviest = std::max(heaviest, 1 / double(inverse));
-    const double density = heaviest / std::pow(double(body.spacing), 3),
-                 moved = 2.0 / 3 * glm::pi<double>() * std::pow(radius, 3) * density;
-    return 1 / (2 * moved / (seconds * seconds) + 2 * radius * modulus_of_half_space(body));
-}
 
 }  // namespace
 
@@ -81,7 +58,9 @@ void Probe::begin(double time, const std::vector<Skin>& skins) {
     const vec3 from = origin + position(recipe_.path, time);
     hand_ = std::make_unique<FeltHand>(driver(recipe_.device).make({.path = std::move(path)}),
                                        TouchSettings{.radius = recipe_.radius, .feels = feels_}, from);
-    if (presses()) untouched_ = skins;
+    if (!presses()) return;
+    untouched_ = skins;
+    for (Skin& skin : untouched_) skin.triangles = nullptr;  // places and normals will do
 }
 
 void Probe::expect_jump() {
@@ -99,24 +78,21 @@ void Probe::advance(double time, double seconds, const std::vector<Skin>& skins,
     tick(time, seconds);
 }
 
-Press Probe::press(double time, double seconds, dvec3 reaction, const std::vector<Skin>& skins,
-                   std::span<const Model> bodies) {
+Press Probe::press(double time, double seconds, std::optional<dvec3> reaction, const std::vector<Skin>& skins,
+                   std::size_t bodies) {
     if (!hand_) begin(time, skins);
-    Simulated simulated{.surfaces = bodies.size()};
-    if (slice_ > 0) simulated.load = reaction / slice_;
+    if (reaction && slice_ > 0) load_ = *reaction / slice_;
     slice_ = seconds;
-    for (const Model& model : bodies)
-        simulated.compliance =
-            std::max(simulated.compliance, compliance(model.body, recipe_.radius, seconds));
     const bool ticked = hand_->felt().time > 0;
     const vec3 from = ticked ? vec3(hand_->felt().pose.place) : hand_->start();
-    hand_->feel(skins, time, recipe_.radius + in_a_slice, simulated);
+    hand_->feel(skins, time, recipe_.radius + in_a_slice, {.surfaces = bodies, .load = load_});
     tick(time, seconds);
+    double stiffness = 0;  // as the device can render it
+    for (std::size_t b = 0; ticked && b < bodies; ++b)
+        stiffness = std::max(stiffness, hand_->touch().settings().feels[b].stiffness);
     const Felt& felt = hand_->felt();
-    double stiffness = 0;
-    for (std::size_t b = 0; ticked && b < bodies.size(); ++b)
-        stiffness = std::max(stiffness, double(felt.gain) * feels_[b].stiffness);
-    return {from, (vec3(felt.pose.place) - from) / float(seconds), recipe_.radius, float(stiffness)};
+    return {from, (vec3(felt.pose.place) - from) / float(seconds), recipe_.radius,
+            felt.part * float(stiffness)};
 }
 
 void Probe::tick(double time, double seconds) {

@@ -1,9 +1,8 @@
 #pragma once
 #include "palpate/run/felt_hand.h"
-#include "palpate/scene/build.h"
 
 #include <memory>
-#include <span>
+#include <optional>
 #include <vector>
 
 namespace palpate {
@@ -36,15 +35,17 @@ class Probe {
     /// surface that it shall touch. `moving`: skins may have moved since the last call.
     void advance(double time, double seconds, const std::vector<Skin>& skins, bool moving);
 
-    /// The same for one that presses bodies, the first of the skins: returns what presses them meanwhile.
-    /// `reaction`: N s, of the bodies to what it returned before.
-    Press press(double time, double seconds, dvec3 reaction, const std::vector<Skin>& skins,
-                std::span<const Model> bodies);
+    /// For one that presses, in place of advance(): returns what presses the bodies, which are so many of the
+    /// first skins, from `time` on. `reaction`: N s, of the bodies to what it returned for the slice before,
+    /// if that is known.
+    Press press(double time, double seconds, std::optional<dvec3> reaction, const std::vector<Skin>& skins,
+                std::size_t bodies);
+    bool has_begun() const { return hand_ != nullptr; }
 
     /// The dents in a surface at a time; only the lasting ones if the tip is gone.
     std::vector<Dent> dents(int surface, double time) const;
 
-    // Only after advance():
+    // Only after advance() or press():
     vec3 centre() const { return vec3(hand_->felt().pose.place); }  // m
     /// N: the mean of its strength since the last call.
     double take_force();
@@ -60,7 +61,8 @@ class Probe {
     std::vector<Feel> feels_;
     std::unique_ptr<FeltHand> hand_;
     std::vector<Skin> untouched_;  // of one that presses
-    double slice_ = 0;             // s, how long it pressed by the last call
+    double slice_ = 0;             // s, how long it pressed by the last call,
+    dvec3 load_ = dvec3(0);        // N, and what it was pushed back with, as far as is known
     double forces_ = 0;            // N, the sum
     long ticks_ = 0;               // of so many
 };

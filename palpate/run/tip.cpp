@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace palpate {
@@ -84,7 +85,8 @@ double indentation(const std::vector<Skin>& untouched, const std::vector<Skin>& 
         for (std::size_t i = 0; i < now[s].positions.size(); ++i) {
             const vec3 place = now[s].positions[i];
             if (glm::distance(place, centre) > reach) continue;
-            deepest = std::max(deepest, glm::dot(untouched[s].positions[i] - place, untouched[s].normals[i]));
+            const float way = glm::dot(untouched[s].positions[i] - place, untouched[s].normals[i]);
+            deepest = std::max(deepest, now[s].is_sheet ? std::abs(way) : way);
         }
     return deepest;
 }

@@ -70,6 +70,17 @@ std::size_t World::add(const Body& body, double frequency) {
     return solvers_.size() - 1;
 }
 
+// Does what may throw. If bodies have moved already, they go back first.
+template <class Do>
+auto World::or_undo(bool moved, Do act) {
+    try {
+        return act();
+    } catch (...) {
+        if (moved) undo();
+        throw;
+    }
+}
+
 WorldStats World::step(double seconds, const Acts& acts) {
     auto require = [&](std::size_t body) {
         if (body >= count())
@@ -82,12 +93,17 @@ WorldStats World::step(double seconds, const Acts& acts) {
     stats.bodies.resize(count());
     const int slices = steps_within(seconds, slice_);
     const double length = seconds / slices;
+    slice_reactions_before_ = slice_reactions_;
     for (int s = 0; s < slices; ++s) {
         std::vector<Press> more;
-        if (acts.press_in_slice) more = acts.press_in_slice(s * length, length, slice_reactions_);
+        const OneSlice slice = or_undo(s > 0, [&] {
+            if (acts.press_in_slice) more = acts.press_in_slice(s * length, length, slice_reactions_);
+            OneSlice next(acts, more, count(), s * length, (slices - s) * length);
+            for (std::size_t b = 0; b < count() && (s == 0 || !more.empty()); ++b)
+                solvers_[b]->steps_for(length, next.on(b));
+            return next;
+        });
         slice_reactions_.assign(more.size(), dvec3(0));
-        const OneSlice slice(acts, more, count(), s * length, (slices - s) * length);
-        for (std::size_t b = 0; s == 0 && b < count(); ++b) solvers_[b]->steps_for(length, slice.on(b));
         for (std::size_t b = 0; b < count() && !stats.diverged; ++b) {
             Solver& solver = *solvers_[b];
             Stats now = s == 0 ? solver.step(length, slice.on(b)) : solver.go_on(length, slice.on(b));
@@ -101,6 +117,7 @@ WorldStats World::step(double seconds, const Acts& acts) {
         // All that have gone on since the call began.
         for (std::size_t b = 0; b < count(); ++b)
             if (b != *stats.diverged && (s > 0 || b < *stats.diverged)) solvers_[b]->undo();
+        slice_reactions_ = slice_reactions_before_;
         return stats;
     }
     stats.reactions.assign(acts.presses.size(), dvec3(0));
@@ -113,6 +130,7 @@ WorldStats World::step(double seconds, const Acts& acts) {
 
 void World::undo() {
     for (const auto& solver : solvers_) solver->undo();
+    slice_reactions_ = slice_reactions_before_;
 }
 
 std::vector<State> World::save() const {
@@ -126,6 +144,7 @@ void World::restore(const std::vector<State>& states) {
         throw Error(fmt::format("states of {} bodies instead of {}", states.size(), count()), "the world",
                     "restore what was saved of the same bodies");
     for (std::size_t b = 0; b < count(); ++b) solvers_[b]->restore(states[b]);
+    slice_reactions_.clear();
 }
 
 double World::shortest_step(double longest) const {

@@ -27,9 +27,9 @@ struct Acts {
     std::span<const BodyMove> moves = {};
     std::span<const Motion> colliders = {};  // as in Influences
     vec3 wind = vec3(0);                     // m/s
-    /// Called before each slice, if given, `at` seconds after the call began: what presses besides for the
+    /// Called before each slice, if given, `at` seconds after the call began: returns further presses for the
     /// next `seconds`. Here hands answer that feel the bodies where they are now. `reactions`: N s, to each
-    /// of the presses that it returned for the slice before, in this call or the last.
+    /// of those that it returned for the slice before, in this call or the last; none after restore().
     std::function<std::vector<Press>(double at, double seconds, std::span<const dvec3> reactions)>
         press_in_slice = {};
 };
@@ -75,13 +75,17 @@ class World {
     std::size_t memory() const;
 
  private:
+    template <class Do>
+    auto or_undo(bool moved, Do act);
+
     const Simulation simulation_;
     const gl::Context* context_;
     std::unique_ptr<Team> own_team_;
     Team& team_;
     const double slice_;
     std::vector<std::unique_ptr<Solver>> solvers_;
-    std::vector<dvec3> slice_reactions_;  // N s, to what pressed in the last slice alone
+    std::vector<dvec3> slice_reactions_,
+        slice_reactions_before_;  // N s, to what pressed in the last slice; before this call
 };
 
 }  // namespace palpate

@@ -20,11 +20,16 @@ double lasting_depth(std::span<const Dent> lasting, const Contact& contact) {
 }
 
 dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel> feels,
-            std::span<const Dent> lasting) {
-    const Contact* most = proxy.deepest();
+            std::span<const Dent> lasting, int from) {
+    const Contact* most = nullptr;
+    dvec3 sunk(0), sunk_in_all(0);
+    for (const Contact& contact : proxy.contacts()) {
+        sunk_in_all += contact.depth * contact.normal;
+        if (contact.surface < from) continue;
+        sunk += contact.depth * contact.normal;
+        if (!most || contact.depth > most->depth) most = &contact;
+    }
     if (!most) return dvec3(0);
-    dvec3 sunk(0);
-    for (const Contact& contact : proxy.contacts()) sunk += contact.depth * contact.normal;
     const double depth = glm::length(sunk);
     if (!(depth > 0)) return dvec3(0);
     if (std::size_t(most->surface) >= feels.size())
@@ -41,7 +46,7 @@ dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel
         there > 0 ? side * dvec3(dented_normal(lasting, vec3(most->point), vec3(side * normal))) : normal;
     const dvec3 pushed = push / std::max(glm::dot(turned, normal), 0.1) * turned;
 
-    dvec3 along = feel.stiffness * (proxy.position() - hand - sunk);
+    dvec3 along = feel.stiffness * (proxy.position() - hand - sunk_in_all);
     const double held = glm::length(along), most_held = feel.friction.still * push;
     if (held > most_held) along *= most_held / held;
     return pushed + along;

@@ -13,8 +13,9 @@ namespace palpate {
 /// Error if there is none for the one that is touched. `lasting`: dents that were there before. They lower
 /// the surface, so the force acts along the normal of the dented surface: it is the gradient of the energy
 /// 1/2 stiffness · depth². A sheet's dents are felt from the side from which they were pressed in.
+/// `from`: only contacts with surfaces of this number or higher push.
 dvec3 force(const Proxy& proxy, dvec3 hand, dvec3 velocity, std::span<const Feel> feels,
-            std::span<const Dent> lasting = {});
+            std::span<const Dent> lasting = {}, int from = 0);
 
 /// By how much lasting dents lower the surface at a contact, m, not below 0.
 double lasting_depth(std::span<const Dent> lasting, const Contact& contact);

@@ -133,8 +133,8 @@ Wrench Safety::allow(const Wrench& wanted, const DeviceState& state, dvec3 veloc
         let_go(Held::not_finite);
     }
     gain_ = fresh > 0 ? grown(effort(wanted, 1, 1), now) : 0;
-    const double part = gain_ * fresh;  // times 0, what is not finite is 0, too
-    auto some_of = [part](vec3 all) { return part > 0 ? part * dvec3(all) : dvec3(0); };
+    part_ = gain_ * fresh;  // times 0, what is not finite is 0, too
+    auto some_of = [this](vec3 all) { return part_ > 0 ? part_ * dvec3(all) : dvec3(0); };
     const dvec3 force = passivity_control(some_of(wanted.force), velocity - surface, seconds);
     allowed_ = {limited(force_, force, allowed_.force, forces, seconds),
                 limited(torque_, some_of(wanted.torque), allowed_.torque, torques, seconds)};
@@ -176,6 +176,7 @@ void Safety::warm(double now) {
 }
 
 void Safety::let_go(Held why) {
+    part_ = 0;
     reason_ = why;
     waits_ = true;
     calm_since_ = time_;

@@ -103,8 +103,9 @@ class Safety {
     Held held() const;
     Held last_reason() const { return reason_; }
 
-    /// Of the ramp at the last call: the part of the wanted force that acts, 0 to 1, before all limits.
-    double gain() const { return gain_; }
+    /// Which part of the wanted force acted at the last call, 0 to 1: of the ramp, and of the fade of old
+    /// samples. Other limits came after.
+    double part() const { return part_; }
 
     double peak_force() const { return force_.peak; }  // N, at the device
     const Warmth& warmth() const { return warmth_; }
@@ -128,7 +129,7 @@ class Safety {
     bool waits_ = true;
     std::optional<double> calm_since_;  // s, since when little has been wanted
     double begun_ = 0;                  // s, when the ramp began
-    double gain_ = 0;
+    double gain_ = 0, part_ = 0;
     Warmth warmth_;
     double effort_ = 0;           // N, at the device, since the last call
     double absorbed_ = 0;         // J, the energy that the surface has absorbed since the touch began: the

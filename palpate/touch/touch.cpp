@@ -242,23 +242,27 @@ dvec3 Touch::wanted(double now, double* proxy_seconds) {
     if (proxy_seconds) *proxy_seconds = thread_seconds() - start;
     if (pushed > new_settings_.shown().surprise) safety_.let_go(Held::pushed);
     const Contact* most = proxy_.deepest();
-    const dvec3 penalty =
-        most ? force(proxy_, hand, velocity_, feels_, marks_.on(std::size_t(most->surface))) : dvec3(0);
-    return with_load(penalty, most);
+    if (!most) return feels_load(now) ? surroundings_.shown().simulated.load / safety_.part() : dvec3(0);
+    const std::span<const Dent> lasting = marks_.on(std::size_t(most->surface));
+    // Whoever is deep inside when no force acts yet must come out first.
+    if (!(safety_.part() > 0)) return force(proxy_, hand, velocity_, feels_, lasting);
+    const Simulated& simulated = surroundings_.shown().simulated;
+    const dvec3 still = force(proxy_, hand, velocity_, feels_, lasting, int(simulated.surfaces));
+    return feels_load(now) ? still + simulated.load / safety_.part() : still;
 }
 
-// Simulated surfaces and the coupling are two springs in series: from what the surfaces did to the hand when
-// they were where the patch shows them, the force changes as the penalty does, but less. It never pulls.
-dvec3 Touch::with_load(dvec3 penalty, const Contact* contact) {
-    const Simulated& simulated = surroundings_.shown().simulated;
-    const bool soft = contact && std::size_t(contact->surface) < simulated.surfaces;
-    if (is_fresh_) at_patch_ = soft ? penalty : dvec3(0);
-    const double gain = safety_.gain();
-    const dvec3 load = gain > 0 ? simulated.load / gain : dvec3(0);
-    if (!soft) return penalty + load;
-    const double stiffness = feels_[std::size_t(contact->surface)].stiffness;
-    const dvec3 all = load + (penalty - at_patch_) / (1 + stiffness * simulated.compliance);
-    return glm::dot(all, contact->normal) > 0 ? all : dvec3(0);
+bool Touch::is_simulated(const Contact& contact) const {
+    return std::size_t(contact.surface) < surroundings_.shown().simulated.surfaces;
+}
+
+bool Touch::touches_simulated() const {
+    return std::ranges::any_of(proxy_.contacts(), [this](const Contact& one) { return is_simulated(one); });
+}
+
+bool Touch::feels_load(double now) const {
+    constexpr double oldest = 0.02;  // s
+    return safety_.part() > 0 && (is_fresh_ || touches_simulated()) &&
+           now - surroundings_.shown().patch.time() <= oldest;
 }
 
 // A low-pass filter on the direction of the force: without it one would feel the edges of a coarse mesh.
@@ -282,7 +286,7 @@ dvec3 Touch::turned_slowly(dvec3 wanted, double seconds) {
 void Touch::leave_marks() {
     if (safety_.held() != Held::no && safety_.held() != Held::ramping) return;
     for (const Contact& contact : proxy_.contacts())
-        marks_.leave(contact, feels_[std::size_t(contact.surface)], stroke_);
+        if (!is_simulated(contact)) marks_.leave(contact, feels_[std::size_t(contact.surface)], stroke_);
 }
 
 void Touch::publish(double now) {
@@ -293,7 +297,7 @@ void Touch::publish(double now) {
     published_.force = wrench_.force;
     published_.held = safety_.held();
     published_.last_reason = safety_.last_reason();
-    published_.gain = float(safety_.gain());
+    published_.part = touches_simulated() ? float(safety_.part()) : 0;
     published_.buttons = state_.buttons;
     published_.placed = state_.placed;
     published_.warmth = safety_.warmth();
@@ -311,7 +315,7 @@ void Touch::publish(double now) {
     for (const Contact& contact : proxy_.contacts()) {
         const auto s = std::size_t(contact.surface);
         const Dent dent = dent_under(contact, feels_[s], marks_.on(s));
-        if (dent.depth != 0) add(dent, s);
+        if (dent.depth != 0 && !is_simulated(contact)) add(dent, s);
         published_.depth =
             std::max(published_.depth, float(contact.depth - lasting_depth(marks_.on(s), contact)));
     }

@@ -29,13 +29,13 @@ struct TouchSettings {
                                       // over an edge
 };
 
-/// What a hand feels of surfaces that something simulates, and that therefore answer only now and then.
+/// What a hand feels of surfaces that something simulates: not the penalty force of its proxy, but what the
+/// simulation did to it.
 struct Simulated {
     std::size_t surfaces = 0;  // so many of a patch's, the first
-    /// N, on the hand: what they did to it when they were where the patch shows them. They were pressed with
-    /// Felt::gain of the stiffness, so the ramp does not weaken it once more.
+    /// N, on the hand, when they were where the patch shows them. They were pressed with Felt::part of the
+    /// stiffness, so that the ramp does not weaken it once more.
     dvec3 load = dvec3(0);
-    double compliance = 0;  // m/N: so far they yield to more than that until the next patch
 };
 
 /// The state of a touch at its last tick.
@@ -48,8 +48,9 @@ struct Felt {
     float depth = 0;                   // m, how deep it presses, below lasting dents
     Held held = Held::waiting;         // whether and why the force is reduced,
     Held last_reason = Held::waiting;  // and why it was last let go
-    float gain =
-        0;  // of the ramp, 0 to 1: what simulates a surface presses it with this part of the stiffness
+    /// With which part of the stiffness the tip presses a simulated surface, 0 to 1: as much of the wanted
+    /// force as acts (Safety::part), and none while it touches none.
+    float part = 0;
     unsigned buttons = 0;
     unsigned placed = 0;
     Warmth warmth = {};  // of the device's motors
@@ -83,9 +84,9 @@ class Touch {
     void set(TouchSettings settings);
 
     /// Sets what the hand can touch from now on. Call it whenever surfaces have moved; once if they do not
-    /// move. A surface that nothing simulates pushes with the full stiffness of its Feel; of the others the
-    /// hand feels the load, and the softer for their compliance what has changed since the patch. Throws
-    /// Error if it has more surfaces than there are feels.
+    /// move. What is simulated is felt by its load, and is not dented: for 20 ms after the patch at most, and
+    /// no longer than the tip touches it, but at least in one tick. Until a force may act (Safety), it is
+    /// wanted as of surfaces that stand still. Throws Error if there are more surfaces than feels.
     void feel(Patch patch, Simulated simulated = {});
 
     /// The newest state.
@@ -136,7 +137,9 @@ class Touch {
     void take_sample(const DeviceState& read);
     void bound_stiffness();
     dvec3 wanted(double now, double* proxy_seconds);
-    dvec3 with_load(dvec3 penalty, const Contact* contact);
+    bool is_simulated(const Contact& contact) const;
+    bool touches_simulated() const;
+    bool feels_load(double now) const;
     dvec3 turned_slowly(dvec3 wanted, double seconds);
     void leave_marks();
     void push(double now, double seconds);
@@ -156,8 +159,7 @@ class Touch {
         Simulated simulated;
     };
     TripleBuffer<Surroundings> surroundings_;
-    bool is_fresh_ = false;      // whether the patch came since the last tick
-    dvec3 at_patch_ = dvec3(0);  // N: the penalty force on simulated surfaces at the first tick of the patch
+    bool is_fresh_ = false;         // whether the patch came since the last tick
     std::atomic<double> lost_ = 0;  // s, of the settings, for the watchdog
     DeviceState state_ = {};        // the newest valid sample
     bool knows_place_ = false;

@@ -449,6 +449,23 @@ TEST(Play, AHandFeelsTheBodyThatItPresses) {
     EXPECT_LE(std::abs(last[last.size() - 20] / last.back() - 1), 0.01);  // it stands still
 }
 
+// A surface is no stiffer than the device can render, also to the body; and a hand that begins inside presses
+// nothing.
+TEST(Play, AHandPressesAsStifflyAsItsDeviceCan) {
+    const std::string touch = "kind = \"touch\"\n";
+    const Report most = press_by(touch, "touch = { stiffness = 500 }\n"),
+                 more = press_by(touch, "touch = { stiffness = 20000 }\n");
+    EXPECT_EQ(most.tools[0].force.back(), more.tools[0].force.back());
+    const Report inside = run(
+        scene("[simulation]\nduration = 2\n[[body]]\nname = \"block\"\ndims = [11, 7, 11]\nspacing = 0.006\n"
+              "youngs_modulus = 4000\ndensity = 1000\ndamping = 10\npin = { below = 0 }\n"
+              "[[tool]]\nkind = \"touch\"\nradius = 0.012\npath = [[0, 0.03, 0.03, 0.03], [3, 0.03, 0.03, "
+              "0.03]]\n"),
+        {});
+    EXPECT_EQ(inside.tools[0].largest_force, 0);
+    EXPECT_EQ(inside.bodies[0].inverted_cells, 0u);
+}
+
 // What the hand has felt, the body has got, also while the force ramps up. (When the body flies off, the
 // passivity control takes from what the hand would feel.)
 TEST(Play, AHandGivesABodyTheMomentumThatItFeels) {

@@ -106,6 +106,31 @@ TEST(World, AsksWhatPressesBeforeEachSlice) {
     EXPECT_LE(glm::distance(sum, all.reactions[0]), 1e-12);
 }
 
+// What a later slice is asked to do, and cannot be done, or fails when it is asked for: then nothing has
+// moved.
+TEST(World, GoesBackIfALaterSliceIsRefused) {
+    Simulation fixed = on_cpu;
+    fixed.force = false;
+    World world(fixed, nullptr, nullptr, 0.002);
+    world.add(pinned_box());
+    world.add(pinned_box());
+    world.step(0.01);
+    const std::vector<State> before = world.save();
+    auto fails_with = [&](const std::vector<Press>& presses) {
+        return refusal([&] {
+            world.step(0.01, {.press_in_slice = [&](double at, double, std::span<const dvec3>) {
+                           if (at > 0.003 && presses.empty()) throw Error("no", "a test", "do not");
+                           return at > 0.003 ? presses : std::vector<Press>();
+                       }});
+        });
+    };
+    const Press stiff{.centre = vec3(0.025f, 0.035f, 0.015f), .radius = 0.02f, .stiffness = 1e7f};
+    EXPECT_NE(fails_with({stiff}), "");
+    for (std::size_t b : {0u, 1u}) expect_same_bits(world.save()[b], before[b]);
+    EXPECT_NE(fails_with({}), "");
+    for (std::size_t b : {0u, 1u}) expect_same_bits(world.save()[b], before[b]);
+}
+
 // Whoever blows up, in whichever slice: then all are as they were, to the bit.
 TEST(World, GoesOnWithAllOrNone) {
     for (const double slice : {0.01, 0.001})

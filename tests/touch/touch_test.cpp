@@ -130,29 +130,89 @@ TEST(Touch, AHandComesToRestWhereItsForceIsTheWalls) {
     }
 }
 
-// Of a simulated surface the load, from the first tick of a patch on; after that as two springs in series;
-// never a pull.
+// A hand that goes 2 mm into a slab, which is simulated, and at 4 s out of it; each call of `until` brings
+// patches with that load, a millisecond apart.
+struct OnSimulated {
+    Mesh mesh = slab();
+    Scene1 s;
+
+    explicit OnSimulated(TouchSettings settings = soft(), vec3 first = {0, 0.01f, 0})
+        : s(std::make_unique<Script>(path({{0, first},
+                                           {1.2, first},
+                                           {1.5, {0, radius - 0.002f, 0}},
+                                           {4, {0, radius - 0.002f, 0}},
+                                           {4.1, {0, 0.01f, 0}}})),
+            std::move(settings)) {}
+    void feel(dvec3 load) {
+        const Touchable one[] = {{mesh.positions, mesh.triangles}};
+        s.touch->feel(Patch(one, vec3(0), 1, s.time), {.surfaces = 1, .load = load});
+    }
+    void until(double end, dvec3 load) {
+        while (s.time < end - 1e-9) {
+            feel(load);
+            s.tick();
+        }
+    }
+};
+
 TEST(Touch, OfASimulatedSurfaceItFeelsTheLoad) {
-    const Mesh mesh = slab();
-    const float deep = radius - 0.002f;
-    Scene1 s(std::make_unique<Script>(path({{0, {0, 0.01f, 0}},
-                                            {1.2, {0, 0.01f, 0}},
-                                            {1.5, {0, deep, 0}},
-                                            {2, {0, deep, 0}},
-                                            {2.1, {0, deep - 0.001f, 0}},
-                                            {2.5, {0, deep - 0.001f, 0}},
-                                            {2.6, {0, radius - 1e-4f, 0}}})),
-             soft());
-    s.touch->feel(all_of(mesh), {.surfaces = 1});
-    s.until(1.9);
-    const double compliance = 0.004;
-    s.touch->feel(all_of(mesh), {.surfaces = 1, .load = {0, 0.25, 0}, .compliance = compliance});
-    s.until(1.95);
-    EXPECT_LE(std::abs(s.device->written.y - 0.25), 1e-4);
-    s.until(2.4);
-    EXPECT_LE(std::abs(s.device->written.y - (0.25 + 300 * 0.001 / (1 + 300 * compliance))), 1e-3);
-    s.until(2.8);
-    EXPECT_EQ(s.device->written, vec3(0));
+    OnSimulated on;
+    on.until(1.9, {0, 0.25, 0});
+    EXPECT_LE(std::abs(on.s.device->written.y - 0.25), 1e-4);
+    EXPECT_EQ(on.s.touch->felt().part, 1);
+    on.until(1.95, {0, 0.1, 0});
+    EXPECT_LE(std::abs(on.s.device->written.y - 0.1), 1e-4);
+}
+
+// A simulation that hangs pushes nobody for long, and nobody who has left.
+TEST(Touch, ALoadEndsWithItsPatchAndWithTheContact) {
+    OnSimulated hangs;
+    hangs.until(1.9, {0, 0.25, 0});
+    hangs.s.until(1.915);
+    EXPECT_GT(hangs.s.device->written.y, 0.2f);
+    hangs.s.until(1.925);
+    EXPECT_EQ(hangs.s.device->written, vec3(0));
+    OnSimulated leaves;
+    leaves.until(4.015, {0, 0.25, 0});
+    leaves.s.until(4.03);
+    EXPECT_EQ(leaves.s.device->written, vec3(0));
+}
+
+// Whoever is inside, since the surface has jumped over it or it begins there, presses and feels nothing until
+// it has come out.
+TEST(Touch, AHandThatIsInsideMustComeOutFirst) {
+    OnSimulated on;
+    on.until(1.9, {0, 0.25, 0});
+    for (vec3& p : on.mesh.positions) p.y += 0.004f;  // a surface that jumps
+    on.until(3.9, {0, 0, 0});
+    EXPECT_EQ(on.s.touch->felt().part, 0);
+    EXPECT_EQ(on.s.device->written, vec3(0));
+    OnSimulated began(soft(), {0, radius - 0.008f, 0});
+    began.until(1.1, {0, 0, 0});
+    EXPECT_EQ(began.s.touch->felt().part, 0);
+}
+
+// In a corner of both, the wall that stands still pushes as it always does.
+TEST(Touch, BesideASimulatedFloorAWallStillPushes) {
+    const Mesh floor = slab(), wall = block(vec3(-0.2f, -0.1f, -0.1f), vec3(-0.02f, 0.1f, 0.1f), 8);
+    TouchSettings settings = soft();
+    settings.feels.push_back(settings.feels[0]);
+    const vec3 out(-0.01f, 0.01f, 0), in(-0.02f + radius - 0.001f, radius - 0.002f, 0);
+    Scene1 s(std::make_unique<Script>(path({{0, out}, {1.2, out}, {1.5, in}, {2, in}})), settings);
+    const Touchable both[] = {{floor.positions, floor.triangles}, {wall.positions, wall.triangles}};
+    while (s.time < 1.9) {
+        s.touch->feel(Patch(both, vec3(0), 1, s.time), {.surfaces = 1, .load = {0, 0.25, 0}});
+        s.tick();
+    }
+    EXPECT_LE(glm::distance(s.device->written, vec3(300 * 0.001f, 0.25f, 0)), 0.03f);
+}
+
+TEST(Touch, ASimulatedSurfaceKeepsNoDents) {
+    TouchSettings settings = soft();
+    settings.feels[0].yield = 0.0005;
+    OnSimulated on(settings);
+    on.until(1.9, {0, 0.25, 0});
+    EXPECT_EQ(on.s.touch->felt().count, 0);
 }
 
 TEST(Touch, AStiffWallIsNoStifferThanTheDeviceCanHold) {
