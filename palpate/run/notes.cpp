@@ -188,10 +188,11 @@ void look_at_steps(const Scene& scene, const Report& report, std::vector<std::st
     const double asked = scene.simulation.step;
     for (const Report::Body& body : report.bodies) {
         if (!(asked > 0) || body.steps == 0 || std::abs(body.step / asked - 1) < 1e-6) continue;
+        const bool slices = has(scene, ToolKind::touch);
         notes.push_back(
-            fmt::format("steps were {:.6g} s and not {:.6g} s, so that whole ones fill a frame of 1/60 s; "
-                        "ask for a number of steps to have them exactly",
-                        body.step, asked));
+            fmt::format("steps were {:.6g} s and not {:.6g} s, so that whole ones fill {}", body.step, asked,
+                        slices ? "the slices of about a millisecond in which a touch is felt"
+                               : "a frame of 1/60 s; ask for a number of steps to have them exactly"));
         return;  // for all bodies alike
     }
 }

@@ -31,13 +31,11 @@ Report::Body describe(const Model& model) {
     return body;
 }
 
-// s: bodies that hands press go on for so long before the hands feel them again. In whole steps, if their
-// length is given.
+// s: bodies that hands press go on for so long before the hands feel them again.
 double slice_for(const Scene& scene) {
     constexpr double felt_slice = 1e-3;
-    if (std::ranges::count(scene.tools, ToolKind::touch, &ToolRecipe::kind) == 0) return frame_seconds;
-    const double step = scene.simulation.step;
-    return step > 0 ? step * std::max(1.0, std::floor(felt_slice / step)) : felt_slice;
+    return std::ranges::count(scene.tools, ToolKind::touch, &ToolRecipe::kind) > 0 ? felt_slice
+                                                                                   : frame_seconds;
 }
 
 // A surface in a cage may be open; every other one except cloth encloses a volume.
