@@ -191,8 +191,7 @@ std::vector<Motion> Play::colliders(double time, double seconds) const {
 std::vector<Dent> Play::dents(std::size_t skin) const {
     std::vector<Dent> all;
     for (const auto& handle : handles_)
-        if (const auto* one = std::get_if<Probe>(&handle);
-            one && !(one->presses() && skin < world_.count())) {
+        if (const auto* one = std::get_if<Probe>(&handle)) {
             const std::vector<Dent> more = one->dents(int(skin), time_);
             all.insert(all.end(), more.begin(), more.end());
         }

@@ -304,8 +304,7 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
         refuse({"from", "along", "shaft"}, "remove it");
     else
         refuse({"body", "near", "relative"}, "remove it, or write kind = \"drag\"");
-    if (feels(tool.kind))
-        refuse({"stiffness"}, "say it of the surfaces: touch = { stiffness = 400 }");
+    if (feels(tool.kind)) refuse({"stiffness"}, "say it of the surfaces: touch = { stiffness = 400 }");
 }
 
 const NumberRange air = zero_or_more("kg/m³", "1.2 is usual").usual(0.01, 2000);

@@ -110,7 +110,7 @@ WorldStats World::step(double seconds, const Acts& acts) {
             if (now.diverged) stats.diverged = b;
             for (std::size_t p = 0; p < more.size() && !now.diverged; ++p)
                 slice_reactions_[p] += now.reactions[acts.presses.size() + p];
-            now.reactions.resize(acts.presses.size());
+            now.reactions.resize(acts.presses.size(), dvec3(0));
             ::palpate::add(stats.bodies[b], now);
         }
         if (!stats.diverged) continue;

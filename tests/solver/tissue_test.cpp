@@ -192,8 +192,8 @@ TEST(Tissue, BarsHaveTheirModulusAndPoissonsRatio) {
         }
 }
 
-// From one cell of thickness on. The wall holds the width too, of which beam theory knows nothing; `solid`: how
-// far CalculiX's finest sags over that theory (docs/results.md).
+// From one cell of thickness on. The wall holds the width too, of which beam theory knows nothing; `solid`:
+// how far CalculiX's finest sags over that theory (docs/results.md).
 TEST(Tissue, CantileversSagAsBeamsDo) {
     const std::pair<float, double> solids[] = {{0.3f, 0.991}, {0.45f, 0.979}, {0.49f, 0.973}};
     for (int cells : {1, 2, 3, 4})
