@@ -84,9 +84,10 @@ class Touch {
     void set(TouchSettings settings);
 
     /// Sets what the hand can touch from now on. Call it whenever surfaces have moved; once if they do not
-    /// move. What is simulated is felt by its load, and is not dented: for 20 ms after the patch at most, and
-    /// no longer than the tip touches it, but at least in one tick. Until a force may act (Safety), it is
-    /// wanted as of surfaces that stand still. Throws Error if there are more surfaces than feels.
+    /// move. Simulated surfaces are felt by their load and keep no dents. The load acts while the tip touches
+    /// one of them, and in the first tick of a patch, but no longer than 20 ms after the patch's time. While
+    /// Safety waits for a small force, what is wanted is as of surfaces that stand still. Throws Error if
+    /// there are more surfaces than feels.
     void feel(Patch patch, Simulated simulated = {});
 
     /// The newest state.

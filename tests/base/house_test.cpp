@@ -104,6 +104,8 @@ TEST(House, TheWholeLibraryIsInItsOneHeader) {
                                          "solver/machine.h",
                                          "solver/pushes.h",
                                          "solver/reference/node.h",
+                                         "scene/hold.h",
+                                         "scene/reading.h",
                                          "scene/thin_walls.h",
                                          "solver/short_steps.h",
                                          "mesh/pieces.h",
