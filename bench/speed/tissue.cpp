@@ -29,6 +29,7 @@ const std::string sags = "A cantilever's sag under its own weight over Timoshenk
 
 constexpr Plate plates[] = {Plate::flat, Plate::dished};
 constexpr double ratios[] = {0.45, 0.49};
+constexpr float ratios_of_bars[] = {0.3f, 0.45f, 0.49f};
 constexpr double depths[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3};
 constexpr double shortenings[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5};
 
@@ -63,11 +64,11 @@ class Study {
     }
 
     void small_deformations() {
-        for (float poisson : {0.3f, 0.45f, 0.49f}) {
+        for (float poisson : ratios_of_bars) {
             by_thickness(sags, tissue_sag, poisson);
             if (has_ccx_) add(sags, ratio_of(poisson), "the solid, by CalculiX", solid_sag(double(poisson)));
         }
-        for (float poisson : {0.3f, 0.45f, 0.49f}) by_thickness(torques, tissue_torque, poisson);
+        for (float poisson : ratios_of_bars) by_thickness(torques, tissue_torque, poisson);
     }
 
     void by_thickness(const std::string& table, double (*measure)(int cells, float poisson), float poisson) {

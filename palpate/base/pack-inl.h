@@ -32,19 +32,21 @@ struct Pack {
 
 FN bool any_node(Mask m) { return !hn::AllFalse(Lanes(), m); }
 FN size_t lanes() { return hn::Lanes(Lanes()); }
-// Each lane in the next one's place, and the last in the first's.
+FN Pack load(const float* from) { return hn::LoadU(Lanes(), from); }
+FN void store(Pack a, float* to) { hn::StoreU(a.v, Lanes(), to); }
+
+// Each lane in the next one's place, and the last in the first's. There are a power of two of them.
 FN Pack one_lane_on(Pack a) {
-    const Lanes d;
-    const hn::RebindToSigned<Lanes> whole;
-    const auto from =
-        hn::And(hn::Iota(whole, std::int32_t(lanes()) - 1), hn::Set(whole, std::int32_t(lanes()) - 1));
-    return hn::TableLookupLanes(a.v, hn::IndicesFromVec(d, from));
+    const hn::RebindToSigned<Lanes> d;
+    const auto last = std::int32_t(lanes()) - 1;
+    const auto from = hn::And(hn::Iota(d, last), hn::Set(d, last));
+    return hn::TableLookupLanes(a.v, hn::IndicesFromVec(Lanes(), from));
 }
+
+// The first lane of one, and all others of the other.
 FN Pack first_lane_of(Pack first, Pack others) {
     return hn::IfThenElse(hn::FirstN(Lanes(), 1), first.v, others.v);
 }
-FN Pack load(const float* from) { return hn::LoadU(Lanes(), from); }
-FN void store(Pack a, float* to) { hn::StoreU(a.v, Lanes(), to); }
 
 // The processor's own estimate of 1/√a, exact to at least eleven bits.
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_SSE4

@@ -14,10 +14,6 @@
 namespace palpate {
 namespace {
 
-bool has(const Scene& scene, ToolKind kind) {
-    return std::ranges::any_of(scene.tools, [&](const ToolRecipe& tool) { return tool.kind == kind; });
-}
-
 // ---- obstacles ----
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -144,7 +140,7 @@ bool is_moved(const Models& made, std::size_t body) {
 bool is_held(const Scene& scene, const Models& made, std::size_t body) {
     const std::vector<float>& inverse = made.models[body].body.inverse_mass;
     return std::ranges::any_of(inverse, [](float one) { return !(one > 0); }) || !scene.colliders.empty() ||
-           has(scene, ToolKind::drag) || glm::length(scene.simulation.gravity) == 0;
+           has_tool(scene, ToolKind::drag) || glm::length(scene.simulation.gravity) == 0;
 }
 
 dvec3 middle(std::span<const vec3> points) {
@@ -188,7 +184,7 @@ void look_at_steps(const Scene& scene, const Report& report, std::vector<std::st
     const double asked = scene.simulation.step;
     for (const Report::Body& body : report.bodies) {
         if (!(asked > 0) || body.steps == 0 || std::abs(body.step / asked - 1) < 1e-6) continue;
-        const bool slices = has(scene, ToolKind::touch);
+        const bool slices = has_tool(scene, ToolKind::touch);
         notes.push_back(
             fmt::format("steps were {:.6g} s and not {:.6g} s, so that whole ones fill {}", body.step, asked,
                         slices ? "the slices of about a millisecond in which a touch is felt"
@@ -220,7 +216,7 @@ std::string how_to_ask_less(const Scene& scene, const Report& report) {
     bool presses = false, drags = false;
     for (std::size_t t = 0; t < scene.tools.size() && t < report.tools.size(); ++t) {
         const bool acts = report.tools[t].largest_force > 0;
-        presses |= acts && (scene.tools[t].kind == ToolKind::press || scene.tools[t].kind == ToolKind::touch);
+        presses |= acts && presses_bodies(scene.tools[t].kind);
         drags |= acts && scene.tools[t].kind == ToolKind::drag;
     }
     if (presses) add("press less hard");
@@ -299,8 +295,7 @@ std::vector<std::string> notes_before(const Scene& scene, const Models& made) {
                             body.name));
         look_at_weight(scene, made, m, notes);
         for (const ToolRecipe& tool : scene.tools)
-            if ((tool.kind == ToolKind::press || tool.kind == ToolKind::touch) &&
-                tool.radius < widest_gap * body.spacing)
+            if (presses_bodies(tool.kind) && tool.radius < widest_gap * body.spacing)
                 notes.push_back(
                     fmt::format("tool {}: its tip is finer than the lattice of body {} and may fall "
                                 "between the nodes; use more nodes",

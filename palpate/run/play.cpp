@@ -34,8 +34,7 @@ Report::Body describe(const Model& model) {
 // s: bodies that hands press go on for so long before the hands feel them again.
 double slice_for(const Scene& scene) {
     constexpr double felt_slice = 1e-3;
-    return std::ranges::count(scene.tools, ToolKind::touch, &ToolRecipe::kind) > 0 ? felt_slice
-                                                                                   : frame_seconds;
+    return has_tool(scene, ToolKind::touch) ? felt_slice : frame_seconds;
 }
 
 // A surface in a cage may be open; every other one except cloth encloses a volume.
@@ -110,8 +109,6 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
             handles_.emplace_back(Grip(tool));
         else
             handles_.emplace_back(Probe(tool, scene));
-        probes_ |= tool.kind == ToolKind::dent;
-        presses_ |= tool.kind == ToolKind::touch;
         report.tools.emplace_back().name = tool.name;
     }
     const std::size_t models = made.models.size();
@@ -200,7 +197,7 @@ std::vector<Dent> Play::dents(std::size_t skin) const {
 
 // The probes feel the surfaces as they are at `time`, and extrapolate.
 void Play::probe(double time, double seconds) {
-    if (!probes_) return;
+    if (!has_tool(scene_, ToolKind::dent)) return;
     skins();  // which have their own time
     Timed timed(report_.seconds.simulate);
     for (auto& handle : handles_)
@@ -273,7 +270,7 @@ Play::Acting Play::acting(double time, double seconds, const Interaction& hands)
         on.moves.push_back({made_.moves[i].body, {made_.moves[i].nodes, on.places[i]}});
     on.colliders = colliders(time, seconds);
     if (!scene_.wind.empty()) on.wind = position(scene_.wind, time + seconds / 2);
-    if (presses_)
+    if (has_tool(scene_, ToolKind::touch))
         on.press_in_slice = [=, this](double at, double slice, std::span<const dvec3> reactions) {
             return press(time + at, slice, at > 0, reactions);
         };

@@ -107,9 +107,7 @@ class Play {
     std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
     InteractionForces interaction_forces_;
-    double time_ = 0;       // s
-    bool probes_ = false;   // whether any tool dents
-    bool presses_ = false;  // whether any tool presses what it feels
+    double time_ = 0;  // s
 };
 
 /// The even motion of a collider, which is given about its pivot, from one pose to the next.

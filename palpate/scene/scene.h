@@ -175,6 +175,8 @@ enum class ToolKind {
 
 /// Whether a tool is a haptic hand.
 inline bool feels(ToolKind kind) { return kind == ToolKind::dent || kind == ToolKind::touch; }
+/// Whether a tool's tip presses bodies.
+inline bool presses_bodies(ToolKind kind) { return kind == ToolKind::press || kind == ToolKind::touch; }
 
 inline std::span<const Named<ToolKind>> names(ToolKind) {
     static constexpr Named<ToolKind> all[] = {{ToolKind::press, "press"},
@@ -239,6 +241,10 @@ struct Scene {
     /// The files that its paths were read from.
     std::vector<std::filesystem::path> path_files;
 };
+
+inline bool has_tool(const Scene& scene, ToolKind kind) {
+    return std::ranges::any_of(scene.tools, [&](const ToolRecipe& tool) { return tool.kind == kind; });
+}
 
 /// The up direction: the camera's, else against gravity, else y. Unit.
 vec3 sky(const Scene& scene);

@@ -43,8 +43,8 @@ FN Eight vectors(EightReals x, EightReals y, EightReals z) {
     return e;
 }
 
-// Sums and differences along the three axes, but for the sum of all. Corners are subtracted from each other before
-// anything is added, since they may be far from where they count from.
+// Sums and differences along the three axes, but for the sum of all, in whose place is 0. Corners are subtracted from each
+// other before anything is added, since they may be far from where they count from.
 FN EightReals sums_and_differences(EightReals e) {
     Real x0 = e.c[1] - e.c[0], x1 = e.c[3] - e.c[2], x2 = e.c[5] - e.c[4], x3 = e.c[7] - e.c[6];  // edges along x
     Real y = (e.c[2] - e.c[0]) + (e.c[3] - e.c[1]);  // from the first of these to the others, twice
@@ -128,7 +128,7 @@ FN Eight with_hourglasses(Eight push, Eight mode, Real weight) {
 FN Eight cell_forces(Eight corners, Real weight) {
     Eight mode = modes(corners), push;
     Deformation now = deformation(mode);
-    Real squeezed = max(-now.d, Real(0.0f)), ease = eased(now.drawn);
+    Real squeezed = max(-now.d, Real(0.0f)), ease = eased(now.drawn);  // and d + squeezed = max(d, 0)
     Real area = Real(-0.25f * pass.cell_size * pass.cell_size) * weight;
     Real bulk = ease * (Real(pass.lame) * now.d - Real(pass.shear) * squeezed);
     Real pressure = area * (bulk - Real(pass.shear) / (Real(1.0f) + (now.d + squeezed)));
