@@ -48,6 +48,8 @@ inline std::span<const Named<Integrator>> names(Integrator) {
 
 inline constexpr int most_threads = 256;
 inline constexpr double frame_seconds = 1.0 / 60;  // from picture to picture
+inline constexpr int slices_per_frame = 17;
+inline constexpr double slice_seconds = frame_seconds / slices_per_frame;  // the longest below 1 ms
 
 /// How a body is moved.
 struct Simulation {

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr long frames_between_good = 30;
+constexpr long slices_between_good = 30 * slices_per_frame;
 constexpr std::size_t most_good = 5;           // so the oldest is about two seconds old
 constexpr std::size_t most_inputs = 500'000;   // of a recording: hours
 constexpr std::size_t most_samples = 60 * 60;  // of a report's curves
@@ -235,7 +235,7 @@ std::unique_ptr<Experiment> Experiment::beside(const std::vector<Change>& more) 
     std::unique_ptr<Experiment> other(new Experiment(std::move(prepared), context_, this));
     other->made_.play->restore(play().save());
     other->made_.play->take_tools(play());
-    other->frame_ = frame_;
+    other->slice_ = slice_;
     return other;
 }
 
@@ -270,7 +270,7 @@ void Experiment::redo() {
 
 void Experiment::restart() {
     take(make(history_[at_]));
-    frame_ = 0;
+    slice_ = 0;
     good_.clear();
     done_ = {source(), changes(), {}, 0, {}};
     replayed_ = 0;
@@ -285,7 +285,7 @@ void Experiment::return_to_good() {
     if (!same_shapes(good.setting.changes, changes())) shapes_ = std::make_shared<char>();
     take(std::move(made));
     record({done_.frames, ReturnToGood{}});
-    frame_ = good.frame;
+    slice_ = good.slice;
     if (good.setting != history_[at_]) add_to_history(good.setting);
     good_ = {good};
 }
@@ -320,7 +320,7 @@ bool Experiment::is_pinned(std::size_t body, int node) const {
     return !(models().models[body].body.inverse_mass[std::size_t(node)] > 0);
 }
 
-double Experiment::time() const { return double(frame_) * frame_seconds; }
+double Experiment::time() const { return double(slice_) / slices_per_frame * frame_seconds; }
 
 double Experiment::stable_step(std::size_t body) const {
     const Body& of = models().models[body].body;
@@ -329,23 +329,23 @@ double Experiment::stable_step(std::size_t body) const {
 
 // ---- going on ----
 
-bool Experiment::advance(const Interaction& hands) {
+bool Experiment::advance(const Interaction& hands, int slices) {
     if (!trouble_.empty()) return false;
-    if (frame_ % frames_between_good == 0) remember();
-    if (!hands.empty()) record({done_.frames, hands});
+    if (good_.empty() || slice_ >= good_.back().slice + slices_between_good) remember();
+    if (!hands.empty() || slices != slices_per_frame) record({done_.frames, hands, slices});
     ++done_.frames;
-    if (!made_.play->advance(time(), frame_seconds, hands)) {
+    if (!made_.play->advance(time(), slices * slice_seconds, hands)) {
         trouble_ = report().notes.empty() ? "the motion blew up" : report().notes.back();
         return false;
     }
-    ++frame_;
+    slice_ += slices;
     for (Report::Tool& tool : made_.report->tools)
         if (tool.time.size() > most_samples) tool.time.clear(), tool.force.clear(), tool.indentation.clear();
     return true;
 }
 
 void Experiment::remember() {
-    good_.push_back({frame_, history_[at_], play().save()});
+    good_.push_back({slice_, history_[at_], play().save()});
     if (good_.size() > most_good) good_.pop_front();
 }
 
@@ -377,25 +377,37 @@ Recording Experiment::recording() const {
 
 bool Experiment::replay(const Recording& recording) {
     require_text();
+    for (int slices = 0; slices < slices_per_frame;) {
+        const int more = replay_one(recording);
+        if (more == 0) return false;
+        slices += more;
+    }
+    return true;
+}
+
+// By how many slices it advances; 0 at its end.
+int Experiment::replay_one(const Recording& recording) {
     Interaction hands;
+    int slices = slices_per_frame;
     for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= done_.frames;
          ++replayed_) {
-        const auto& what = recording.inputs[replayed_].what;
-        if (const auto* some = std::get_if<Interaction>(&what)) {
+        const Input& input = recording.inputs[replayed_];
+        if (const auto* some = std::get_if<Interaction>(&input.what)) {
             hands = *some;
-        } else if (const auto* set_to = std::get_if<SetChanges>(&what)) {
+            slices = input.slices;
+        } else if (const auto* set_to = std::get_if<SetChanges>(&input.what)) {
             set({set_to->changes, {}});
             add_to_history({set_to->changes, {}});
         } else {
             return_to_good();
         }
     }
-    if (done_.frames >= recording.frames || !trouble_.empty()) return false;
+    if (done_.frames >= recording.frames || !trouble_.empty()) return 0;
     if (!takes(hands))
         throw Error(fmt::format("frame {} has an interaction that the bodies cannot take", done_.frames),
                     "the recording", "replay it with the files that it was made with");
-    advance(hands);
-    return true;
+    advance(hands, slices);
+    return slices;
 }
 
 bool Experiment::takes(const Interaction& hands) const {

@@ -51,9 +51,9 @@ class Experiment {
     Experiment(Experiment&&) = default;
     Experiment& operator=(Experiment&&) = delete;
 
-    /// Advances by one frame of 1/60 s. False if the motion has diverged, now or before: then the state is
-    /// that before the frame, and trouble() says so.
-    bool advance(const Interaction& hands = {});
+    /// Advances by one frame of 1/60 s, or by fewer slices: for hands that answer more often. False if the
+    /// motion has diverged, now or before: then the state is that before, and trouble() says so.
+    bool advance(const Interaction& hands = {}, int slices = slices_per_frame);
 
     /// A copy with more changes, which continues from the present state; an interaction may act on both.
     std::unique_ptr<Experiment> beside(const std::vector<Change>& more) const;
@@ -114,8 +114,8 @@ class Experiment {
     /// All inputs since it began or was restarted; see replay(). Throws Error if there were too many to keep.
     Recording recording() const;
 
-    /// Applies a recording's inputs of the next frame, and advances by that frame. False after its last
-    /// frame, or if the motion has diverged for good.
+    /// Applies a recording's next inputs, and advances by at least a frame. False after the last input, or if
+    /// the motion has diverged for good.
     bool replay(const Recording& recording);
 
     /// A hash of all positions and velocities, to the bit.
@@ -129,7 +129,7 @@ class Experiment {
         bool operator==(const Setting&) const = default;
     };
     struct Good {
-        long frame;
+        long slice;  // since time 0
         Setting setting;
         std::vector<State> states;
     };
@@ -148,6 +148,7 @@ class Experiment {
     void carry_over(Made& made);
     void set(const Setting& setting);
     void record(Input input);
+    int replay_one(const Recording& recording);
     void remember();
 
     const gl::Context* context_;
@@ -157,7 +158,7 @@ class Experiment {
     std::vector<std::vector<float>> free_;  // inverse masses without pins, one list for each body, if there
                                             // is no text
     std::string trouble_;
-    long frame_ = 0;         // since time 0
+    long slice_ = 0;         // since time 0
     std::deque<Good> good_;  // in order of time
     Shapes shapes_ = std::make_shared<char>();
 

@@ -1,6 +1,7 @@
 #include "palpate/run/felt_hand.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -32,8 +33,8 @@ void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, co
         measure(speeds_[s], before_[s], skin.positions, seconds);
         surfaces.push_back({skin.positions, *skin.triangles, speeds_[s], skin.is_sheet});
     }
-    const bool ticked = felt_.time > 0;
-    touch_.feel(maker_.next(surfaces, ticked ? felt_.proxy : start_, reach, time), simulated);
+    const vec3 around = felt_.time > 0 ? felt_.proxy : start_;
+    touch_.feel(maker_.next(surfaces, around, reach, time), simulated);
     for (std::size_t s = 0; s < skins.size(); ++s) before_[s] = skins[s].positions;
     before_time_ = time;
     // The old dents can only be removed once the touch has the new surfaces.
@@ -50,6 +51,17 @@ void FeltHand::begin_anew() {
 void FeltHand::tick(double now) {
     touch_.tick(now);
     felt_ = touch_.felt();
+}
+
+// A device that was placed somewhere else did not move there.
+Press FeltHand::press(double seconds, std::size_t bodies) {
+    const bool jumped = felt_.placed != std::exchange(placed_, felt_.placed);
+    const vec3 to = place(), from = jumped ? to : pressed_from_.value_or(to);
+    pressed_from_ = to;
+    double stiffness = 0;  // as the device can render it
+    for (std::size_t b = 0; b < bodies; ++b)
+        stiffness = std::max(stiffness, touch_.settings().feels[b].stiffness);
+    return {from, (to - from) / float(seconds), radius(), felt_.part * float(stiffness)};
 }
 
 }  // namespace palpate

@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/body/influences.h"
 #include "palpate/run/tip.h"
 #include "palpate/touch/loop.h"
 
@@ -30,10 +31,19 @@ class FeltHand {
     void go_live() { loop_.emplace(std::vector<Touch*>{&touch_}); }
     void tick(double now);
 
+    /// What presses the bodies that it feels, during the next `seconds`: a ball of the tip's size, on its way
+    /// from where the device was at the last call to where it was at the last feel() or tick(). Surfaces may
+    /// differ in how stiff they feel; it is as stiff as the stiffest of the first `bodies`, while it touches
+    /// one of them.
+    Press press(double seconds, std::size_t bodies);
+
     /// The state at the last feel() or tick(), so that everything in a picture shows the same moment.
     const Felt& felt() const { return felt_; }
-    vec3 start() const { return start_; }  // m
+    /// Where the device is, as far as is known, m.
+    vec3 place() const { return felt_.time > 0 ? vec3(felt_.pose.place) : start_; }
+    float radius() const { return float(touch_.settings().radius); }  // m, of its tip
     Touch& touch() { return touch_; }
+    bool is_live() const { return loop_.has_value(); }
     /// Only if it is live.
     const TouchLoop& loop() const { return *loop_; }
 
@@ -41,6 +51,8 @@ class FeltHand {
     Touch touch_;
     Felt felt_ = {};
     vec3 start_;
+    std::optional<vec3> pressed_from_;  // m
+    unsigned placed_ = 0;               // Felt::placed then
     bool begins_anew_ = false;
     PatchMaker maker_;
     std::vector<std::vector<vec3>> before_;  // the last positions of the skins,

@@ -33,8 +33,7 @@ Report::Body describe(const Model& model) {
 
 // s: bodies that hands press go on for so long before the hands feel them again.
 double slice_for(const Scene& scene) {
-    constexpr double felt_slice = 1e-3;
-    return has_tool(scene, ToolKind::touch) ? felt_slice : frame_seconds;
+    return has_tool(scene, ToolKind::touch) ? slice_seconds : frame_seconds;
 }
 
 // A surface in a cage may be open; every other one except cloth encloses a volume.
@@ -126,7 +125,16 @@ Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Con
 }
 
 const std::vector<Skin>& Play::skins() const {
-    if (!mapped_) map();
+    if (mapped_ != Mapped::all) map();
+    return skins_;
+}
+
+const std::vector<Skin>& Play::touchable() const {
+    if (mapped_ != Mapped::no) return skins_;
+    Timed timed(report_.seconds.map);
+    for (std::size_t m = 0; m < world_.count(); ++m)
+        deform(made_.models[m].embedding, nodes(m), skins_[m].positions, &world_.team());
+    mapped_ = Mapped::positions;
     return skins_;
 }
 
@@ -142,7 +150,7 @@ std::vector<State> Play::save() const { return world_.save(); }
 
 void Play::restore(const std::vector<State>& states) {
     world_.restore(states);
-    mapped_ = false;
+    mapped_ = Mapped::no;
     for (auto& handle : handles_)
         if (auto* one = std::get_if<Probe>(&handle)) one->expect_jump();
 }
@@ -212,11 +220,11 @@ std::vector<Press> Play::press(double time, double seconds, bool moved, std::spa
     for (auto& handle : handles_)
         if (auto* one = std::get_if<Probe>(&handle); one && one->presses()) probes.push_back(one);
     auto is_there = [time](const Probe* one) { return one->is_there(time); };
-    if (moved) mapped_ = false;
+    if (moved) mapped_ = Mapped::no;
     if (std::ranges::any_of(probes, [&](const Probe* one) { return is_there(one) && !one->has_begun(); }))
-        skins();  // with their normals
-    else if (!mapped_ && std::ranges::any_of(probes, is_there))
-        map_positions();
+        skins();
+    else if (std::ranges::any_of(probes, is_there))
+        touchable();
     std::vector<Press> all;
     for (Probe* one : probes) {
         std::optional<dvec3> reaction;
@@ -238,9 +246,8 @@ bool Play::advance(double time, double seconds, const Interaction& hands) {
     }
     report_.seconds.simulate -= report_.seconds.map - mapping;  // which has its own time
     if (!whole) return false;
-    mapped_ = false;
+    mapped_ = Mapped::no;
     time_ = time + seconds;
-    if (!on_gpu(made_.simulation.backend)) map();
     record(on, time + seconds, seconds);
     return true;
 }
@@ -294,23 +301,12 @@ bool Play::step(double seconds, const Acting& on) {
     return true;
 }
 
-// What is felt needs no normals, unless there have never been any.
-void Play::map_positions() {
-    Timed timed(report_.seconds.map);
-    for (std::size_t m = 0; m < world_.count(); ++m)
-        if (skins_[m].normals.empty())
-            deform(made_.models[m].embedding, nodes(m), skins_[m].positions, skins_[m].normals, nullptr,
-                   &world_.team());
-        else
-            deform(made_.models[m].embedding, nodes(m), skins_[m].positions, &world_.team());
-}
-
 void Play::map() const {
     Timed timed(report_.seconds.map);
     for (std::size_t m = 0; m < world_.count(); ++m)
         deform(made_.models[m].embedding, nodes(m), skins_[m].positions, skins_[m].normals, nullptr,
                &world_.team());
-    mapped_ = true;
+    mapped_ = Mapped::all;
 }
 
 void Play::record(const Acting& on, double time, double seconds) {
@@ -358,8 +354,15 @@ void Play::record(const Acting& on, double time, double seconds) {
         tool.force.push_back(force);
         tool.indentation.push_back(depth);
     }
-    // From a GPU nodes are not fetched for this alone.
-    for (std::size_t m = 0; mapped_ && m < world_.count(); ++m) {
+    count_inverted_cells(time);
+}
+
+// Once a frame. From a GPU nodes are not fetched for this alone.
+void Play::count_inverted_cells(double time) {
+    if (time < counted_ + 0.99 * frame_seconds || (on_gpu(made_.simulation.backend) && mapped_ == Mapped::no))
+        return;
+    counted_ = time;
+    for (std::size_t m = 0; m < world_.count(); ++m) {
         Report::Body& body = report_.bodies[m];
         body.inverted_now = inverted_cells(made_.models[m].body, nodes(m).positions);
         body.inverted_cells = std::max(body.inverted_cells, body.inverted_now);

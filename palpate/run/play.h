@@ -34,8 +34,8 @@ class Play {
     Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context = nullptr,
          std::span<const double> frequencies = {});
 
-    /// Simulates and maps `seconds` from `time` on; on a GPU, mapping is deferred until it is needed. False
-    /// if a body diverged: then the state is unchanged.
+    /// Simulates `seconds` from `time` on; mapping is deferred until it is needed. False if a body diverged:
+    /// then the state is unchanged.
     bool advance(double time, double seconds, const Interaction& hands = {});
 
     /// The forces of the last frame's interaction.
@@ -71,6 +71,9 @@ class Play {
     /// Those of the bodies, then the static surfaces.
     const std::vector<Skin>& skins() const;
 
+    /// The same in less time: their normals may be older than their positions.
+    const std::vector<Skin>& touchable() const;
+
     /// The dents of all tools in a skin.
     std::vector<Dent> dents(std::size_t skin) const;
 
@@ -92,7 +95,7 @@ class Play {
     Acting acting(double time, double seconds, const Interaction& hands);
     bool step(double seconds, const Acting& on);
     void map() const;
-    void map_positions();
+    void count_inverted_cells(double time);
     void probe(double time, double seconds);
     std::vector<Press> press(double time, double seconds, bool moved, std::span<const dvec3> reactions);
     void record(const Acting& on, double time, double seconds);
@@ -103,11 +106,13 @@ class Play {
     mutable World world_;  // whose team maps the skins, too
     WorldStats stats_;
     mutable std::vector<Skin> skins_;
-    mutable bool mapped_ = false;                          // whether skins match the nodes
+    enum class Mapped { no, positions, all };
+    mutable Mapped mapped_ = Mapped::no;                   // how far the skins match the nodes
     std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
     InteractionForces interaction_forces_;
-    double time_ = 0;  // s
+    double time_ = 0;      // s
+    double counted_ = -1;  // s, when inverted cells were last counted
 };
 
 /// The even motion of a collider, which is given about its pivot, from one pose to the next.

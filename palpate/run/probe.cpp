@@ -83,16 +83,9 @@ Press Probe::press(double time, double seconds, std::optional<dvec3> reaction, c
     if (!hand_) begin(time, skins);
     if (reaction && slice_ > 0) load_ = *reaction / slice_;
     slice_ = seconds;
-    const bool ticked = hand_->felt().time > 0;
-    const vec3 from = ticked ? vec3(hand_->felt().pose.place) : hand_->start();
     hand_->feel(skins, time, recipe_.radius + in_a_slice, {.surfaces = bodies, .load = load_});
     tick(time, seconds);
-    double stiffness = 0;  // as the device can render it
-    for (std::size_t b = 0; ticked && b < bodies; ++b)
-        stiffness = std::max(stiffness, hand_->touch().settings().feels[b].stiffness);
-    const Felt& felt = hand_->felt();
-    return {from, (vec3(felt.pose.place) - from) / float(seconds), recipe_.radius,
-            felt.part * float(stiffness)};
+    return hand_->press(seconds, bodies);
 }
 
 void Probe::tick(double time, double seconds) {

@@ -38,6 +38,7 @@ json of_input(const Input& input) {
     if (const auto* hands = std::get_if<Interaction>(&input.what)) {
         for (const Press& press : hands->presses) one["press"].push_back(of_press(press));
         for (const BodyPush& pull : hands->pulls) one["pull"].push_back(of_pull(pull));
+        if (input.slices != slices_per_frame) one["slices"] = input.slices;
     } else if (const auto* set = std::get_if<SetChanges>(&input.what)) {
         one["changes"] = set->changes;
     } else {
@@ -82,6 +83,8 @@ Input to_input(const json& one) {
         input.what = ReturnToGood{};
     else
         input.what = to_hands(one);
+    input.slices = one.value("slices", slices_per_frame);
+    if (input.slices < 1 || input.slices > slices_per_frame) throw std::string("an invalid number of slices");
     return input;
 }
 

@@ -16,10 +16,11 @@ struct SetChanges {
 /// A return to an earlier state; see Experiment.
 struct ReturnToGood {};
 
-/// An input to an experiment before one of its frames.
+/// An input to an experiment before it advances.
 struct Input {
-    long at = 0;  // the number of the frame, from 0
+    long at = 0;  // how often it had advanced
     std::variant<Interaction, SetChanges, ReturnToGood> what;
+    int slices = slices_per_frame;  // of an interaction: by so many it advances then
 };
 
 /// All inputs of an experiment from its beginning, for a replay that is exact to the bit; docs/viewer.md
@@ -28,7 +29,7 @@ struct Recording {
     SceneText scene;  // its text is included; the files that it names are not
     std::vector<Change> changes;
     std::vector<Input> inputs;  // in order of time
-    long frames = 0;            // in all
+    long frames = 0;            // how often it advanced: by a frame, where no input says otherwise
     std::string fingerprint;    // of the state after the last
 };
 

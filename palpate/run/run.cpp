@@ -336,6 +336,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
             report.diverged = true;
             break;
         }
+        if (!on_gpu(made.simulation.backend)) play.skins();  // so that its time counts, drawn or not
         report.simulated += span;
         ++report.frames;
         if (watch.at_rest(report.simulated, span, play)) report.rest = report.simulated;

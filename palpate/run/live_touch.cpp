@@ -1,0 +1,125 @@
+#include "palpate/run/live_touch.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/base/error.h"
+#include "palpate/base/realtime.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr float in_reach = 0.02f;      // m, beyond the tip: more than a hand moves in a slice,
+constexpr float fastest_in_reach = 1;  // m/s, and in longer ones
+
+// What acts `age` seconds later.
+Interaction after(Interaction hands, double age) {
+    const auto moved_for = float(std::min(age, frame_seconds));
+    const bool moves = age < frame_seconds;
+    auto move = [&](vec3& place, vec3& velocity) {
+        place += moved_for * velocity;
+        if (!moves) velocity = vec3(0);
+    };
+    for (Press& press : hands.presses) move(press.centre, press.velocity);
+    for (BodyPush& pull : hands.pulls) move(pull.push.to, pull.push.velocity);
+    return hands;
+}
+
+}  // namespace
+
+LiveTouch::LiveTouch(Experiment& experiment, std::vector<FeltHand*> hands, Experiment* beside)
+    : experiment_(experiment), beside_(beside), hands_(std::move(hands)), loads_(hands_.size(), dvec3(0)) {
+    thread_ = std::thread([this] { run(); });
+}
+
+LiveTouch::~LiveTouch() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+        goes_ = false;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void LiveTouch::set(const Interaction& besides) {
+    besides_ = besides;
+    besides_age_ = 0;
+}
+
+void LiveTouch::go_on() {
+    if (on_gpu(experiment_.models().simulation.backend))
+        throw Error("bodies on a GPU cannot be advanced on another thread", experiment_.source().name,
+                    "use the backend cpu; or call LiveTouch::advance() on the thread of the context");
+    const double time = now();
+    begun_ = std::max(begun_ + double(done_) * slice_seconds, time - frame_seconds);
+    done_ = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        goes_ = true;
+    }
+    changed_.notify_all();
+}
+
+void LiveTouch::hold_still() {
+    std::unique_lock lock(mutex_);
+    goes_ = false;
+    changed_.wait(lock, [&] { return is_still_; });
+    if (auto thrown = std::exchange(thrown_, nullptr)) std::rethrow_exception(thrown);
+}
+
+void LiveTouch::run() {
+    std::unique_lock lock(mutex_);
+    while (!ends_) {
+        is_still_ = !goes_;
+        changed_.notify_all();
+        changed_.wait(lock, [&] { return goes_ || ends_; });
+        is_still_ = false;
+        while (goes_) {
+            lock.unlock();
+            try {
+                const int due = slices_due(now());
+                if (due == 0)
+                    sleep_until(begun_ + double(done_ + 1) * slice_seconds);
+                else
+                    advance(due);
+            } catch (...) {
+                thrown_ = std::current_exception();
+            }
+            lock.lock();
+            if (thrown_) goes_ = false;
+        }
+    }
+}
+
+// Of the time that is lost, a frame is made up for.
+int LiveTouch::slices_due(double time) {
+    begun_ = std::max(begun_, time - double(done_ + slices_per_frame) * slice_seconds);
+    const auto due = long(std::floor((time - begun_) / slice_seconds)) - done_;
+    return int(std::clamp(due, 0L, long(slices_per_frame)));
+}
+
+bool LiveTouch::advance(int slices) {
+    const double start = now(), seconds = slices * slice_seconds;
+    const std::size_t bodies = experiment_.models().models.size();
+    Interaction hands = after(besides_, besides_age_);
+    const std::size_t first = hands.presses.size();
+    for (std::size_t h = 0; h < hands_.size(); ++h) {
+        const float reach = hands_[h]->radius() + in_reach + fastest_in_reach * float(seconds);
+        hands_[h]->feel(experiment_.play().touchable(), start, reach,
+                        {.surfaces = bodies, .load = loads_[h]});
+        hands.presses.push_back(hands_[h]->press(seconds, bodies));
+    }
+    const bool goes_well = experiment_.advance(hands, slices);
+    if (beside_ && beside_->trouble().empty()) beside_->advance(hands, slices);
+    const std::vector<dvec3>& felt = experiment_.play().interaction_forces().presses;
+    for (std::size_t h = 0; h < hands_.size(); ++h) loads_[h] = goes_well ? felt[first + h] : dvec3(0);
+    besides_age_ += seconds;
+    done_ += slices;
+    lengths_.add(seconds);
+    work_.add(now() - start);
+    return goes_well;
+}
+
+}  // namespace palpate

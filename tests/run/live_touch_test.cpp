@@ -1,0 +1,134 @@
+// Hands that press what they feel in real time. No duration decides: what is waited for comes on any machine.
+#include "palpate/run/live_touch.h"
+
+#include "palpate/base/clock.h"
+#include "palpate/base/error.h"
+#include "palpate/base/realtime.h"
+#include "palpate/run/recording.h"
+#include "palpate/touch/drivers.h"
+#include "tests/refusal.h"
+#include "tests/scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace palpate {
+namespace {
+
+constexpr double patience = 20;  // s
+constexpr vec3 over_block(0.03f, 0.052f, 0.03f);
+
+Experiment block(const std::string& more = {}) {
+    return Experiment(prepare({"[[body]]\nname = \"block\"\ndims = [11, 7, 11]\nspacing = 0.006\n"
+                               "youngs_modulus = 4000\ndensity = 1000\ndamping = 10\npin = { below = 0 }\n" +
+                                   more,
+                               "test.toml", "."},
+                              {}));
+}
+
+// On a script, again and again: 4 mm above one of so many blocks, then pressed in by `depth`. A force that
+// was let go because the machine stalled comes back.
+std::unique_ptr<FeltHand> hand(double depth, vec3 above = over_block, std::size_t blocks = 1) {
+    const vec3 in = above - vec3(0, 0.004f + float(depth), 0);
+    Path path;
+    for (double time = 0; time < 10 * patience; time += 3)
+        for (const auto& [after, place] : {std::pair(0.0, above), {0.2, above}, {0.5, in}, {2.8, in}})
+            path.push_back({time + after, place});
+    auto one = std::make_unique<FeltHand>(
+        driver("script").make({.path = std::move(path)}),
+        TouchSettings{.radius = 0.012, .feels = std::vector<Feel>(blocks, {.stiffness = 500})}, above);
+    one->go_live();
+    return one;
+}
+
+// Lets it go on until something holds while it is still.
+bool wait_for(LiveTouch& live, const std::function<bool()>& holds) {
+    for (const double end = now() + patience; now() < end;) {
+        live.go_on();
+        sleep_until(now() + 0.05);
+        live.hold_still();
+        if (holds()) return true;
+    }
+    return false;
+}
+
+TEST(LiveTouch, AHandPressesAndIsPushedBack) {
+    Experiment experiment = block();
+    const auto one = hand(0.005);
+    LiveTouch live(experiment, {one.get()});
+    EXPECT_TRUE(wait_for(live, [&] { return one->felt().part == 1 && one->felt().force.y > 0.1f; }));
+    EXPECT_GT(live.lengths().longest(), 0);
+    EXPECT_LE(live.lengths().longest(), 1.02 * frame_seconds);
+    EXPECT_EQ(live.advances(), live.work().count());
+    const vec3 force = one->felt().force;
+    const dvec3 load = experiment.play().interaction_forces().presses[0];
+    EXPECT_LE(glm::length(dvec3(force) - load), 0.3 * glm::length(load)) << force.y << " " << load.y;
+    EXPECT_LE(std::abs(force.x) + std::abs(force.z), 0.1f * force.y);
+}
+
+// What happened is played back to the bit, whatever slices the machine could afford.
+TEST(LiveTouch, IsRecorded) {
+    const Scratch scratch;
+    Experiment experiment = block();
+    const auto one = hand(0.005);
+    {
+        LiveTouch live(experiment, {one.get()});
+        EXPECT_TRUE(wait_for(live, [&] { return one->felt().part > 0.3f; }));
+        live.advance();
+        live.advance(3);
+    }
+    experiment.change({"body.1.damping=5"});
+    experiment.advance();
+    write_recording(experiment.recording(), scratch / "it.json");
+    const Recording recording = read_recording(scratch / "it.json");
+    Experiment again(prepare(recording.scene, recording.changes));
+    while (again.replay(recording)) {}
+    EXPECT_EQ(again.fingerprint(), experiment.fingerprint());
+    EXPECT_EQ(again.time(), experiment.time());
+}
+
+// While it is held still, nothing moves, and nothing pushes for long.
+TEST(LiveTouch, HeldStillItPushesNobody) {
+    Experiment experiment = block();
+    const auto one = hand(0.005);
+    LiveTouch live(experiment, {one.get()});
+    EXPECT_TRUE(wait_for(live, [&] { return one->felt().force.y > 0.1f; }));
+    const std::string state = experiment.fingerprint();
+    for (const double end = now() + patience; one->touch().felt().force != vec3(0) && now() < end;) {}
+    EXPECT_EQ(one->touch().felt().force, vec3(0));
+    EXPECT_EQ(experiment.fingerprint(), state);
+    EXPECT_TRUE(wait_for(live, [&] { return one->felt().force.y > 0.1f; }));
+}
+
+// A body that blows up pushes nobody, and the way back works.
+TEST(LiveTouch, ABodyThatBlowsUpPushesNobody) {
+    Experiment experiment = block();
+    const auto one = hand(0.005);
+    LiveTouch live(experiment, {one.get()});
+    EXPECT_TRUE(wait_for(live, [&] { return one->felt().force.y > 0.1f; }));
+    experiment.change({"simulation.step=0.016", "body.1.youngs_modulus=1e8"});
+    EXPECT_TRUE(wait_for(live, [&] { return !experiment.trouble().empty(); }));
+    for (const double end = now() + patience; one->touch().felt().force != vec3(0) && now() < end;) {}
+    EXPECT_EQ(one->touch().felt().force, vec3(0));
+    experiment.undo();
+    one->begin_anew();
+    EXPECT_TRUE(wait_for(live, [&] { return one->felt().part == 1 && one->felt().force.y > 0.1f; }));
+}
+
+// Several hands on several bodies, with something else that acts.
+TEST(LiveTouch, SeveralHands) {
+    Experiment experiment = block(
+        "[[body]]\nname = \"other\"\ndims = [11, 7, 11]\nspacing = 0.006\nmove = [0.2, 0, 0]\n"
+        "youngs_modulus = 4000\ndensity = 1000\ndamping = 10\npin = { below = 0 }\n");
+    const auto left = hand(0.005, over_block, 2), right = hand(0.003, over_block + vec3(0.2f, 0, 0), 2);
+    LiveTouch live(experiment, {left.get(), right.get()});
+    Interaction pull;
+    pull.pulls.push_back({0, {0, vec3(0), vec3(0), 5}});
+    live.set(pull);
+    EXPECT_TRUE(
+        wait_for(live, [&] { return left->felt().force.y > 0.05f && right->felt().force.y > 0.01f; }));
+}
+
+}  // namespace
+}  // namespace palpate
