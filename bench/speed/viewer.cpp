@@ -24,10 +24,10 @@ namespace {
 constexpr ivec2 size(1280, 720);
 constexpr double seconds_a_round = 1;
 
-enum class Doing { watching, dragging, feeling };  // feeling: something is dragged as well
+enum class Doing { watching, pulling, pressing };  // pressing: something is pulled as well
 
 constexpr std::pair<Doing, const char*> all_doings[] = {
-    {Doing::watching, "watching"}, {Doing::dragging, "dragging"}, {Doing::feeling, "dragging and feeling"}};
+    {Doing::watching, "watching"}, {Doing::pulling, "pulling"}, {Doing::pressing, "pulling and pressing"}};
 
 // Stands in for a window's framebuffer.
 struct Screen {
@@ -57,11 +57,10 @@ vec2 around(vec2 middle, double time) {
 void begin(Viewer& viewer, Doing doing, vec2 middle) {
     if (doing == Doing::watching) return;
     viewer.move_pointer(middle);
-    viewer.press(Button::left);
-    if (doing == Doing::dragging) return;
+    viewer.press(Button::left, true);
+    if (doing == Doing::pulling) return;
     viewer.keep();
     viewer.release(Button::left);
-    viewer.options.mode = Mode::dent;
     viewer.move_pointer(middle + vec2(150, 60));
     viewer.advance(1);
     viewer.press(Button::left);
@@ -83,26 +82,34 @@ Line measure(Viewer& viewer, Gui& gui, const Screen& screen, Doing doing, double
             line.draw = line.controls = 0;
         }
         if (doing != Doing::watching)
-            viewer.move_pointer(around(middle + (doing == Doing::feeling ? vec2(150, 60) : vec2(0)), time));
+            viewer.move_pointer(around(middle + (doing == Doing::pressing ? vec2(150, 60) : vec2(0)), time));
         due = std::min(due + 60 * (time - last), 2.0);
         last = time;
+        viewer.hold_still();
         viewer.advance(int(due));
         due -= int(due);
+        {
+            Timed timed(line.controls);
+            ImGui::GetIO().DisplaySize = {float(size.x), float(size.y)};
+            ImGui::GetIO().DeltaTime = 1.0f / 30;
+            ImGui_ImplOpenGL3_NewFrame();
+            ImGui::NewFrame();
+            gui.build(viewer);
+        }
         glBindFramebuffer(GL_FRAMEBUFFER, screen.framebuffer.name());
         {
             Timed timed(line.draw);
+            viewer.look();
+            viewer.go_on();
             viewer.draw();
         }
         Timed timed(line.controls);
         glBindFramebuffer(GL_FRAMEBUFFER, screen.framebuffer.name());
-        ImGui::GetIO().DisplaySize = {float(size.x), float(size.y)};
-        ImGui::GetIO().DeltaTime = 1.0f / 30;
-        ImGui_ImplOpenGL3_NewFrame();
-        ImGui::NewFrame();
-        gui.draw(viewer);
+        gui.draw();
         glFinish();
         ++pictures;
     }
+    viewer.hold_still();
     const double passed = now() - start;
     const Report& report = viewer.experiment()->report();
     line.pictures = pictures / passed;

@@ -7,6 +7,7 @@ namespace palpate {
 namespace {
 
 constexpr double shortest = 1e-4, longest = 0.5;  // s: over which a velocity can be measured
+constexpr float deepest = 1.2f;                   // in radii of the tip
 
 // m/s, one for each vertex; none if unknown.
 void measure(std::vector<vec3>& speeds, const std::vector<vec3>& from, const std::vector<vec3>& to,
@@ -51,6 +52,13 @@ void FeltHand::begin_anew() {
 void FeltHand::tick(double now) {
     touch_.tick(now);
     felt_ = touch_.felt();
+}
+
+vec3 FeltHand::place() const {
+    if (felt_.time == 0) return start_;
+    const vec3 way = vec3(felt_.pose.place) - felt_.proxy;
+    const float length = glm::length(way), most = deepest * radius();
+    return felt_.proxy + (length > most ? most / length : 1) * way;
 }
 
 // A device that was placed somewhere else did not move there.

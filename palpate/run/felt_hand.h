@@ -32,15 +32,14 @@ class FeltHand {
     void tick(double now);
 
     /// What presses the bodies that it feels, during the next `seconds`: a ball of the tip's size, on its way
-    /// from where the device was at the last call to where it was at the last feel() or tick(). Surfaces may
-    /// differ in how stiff they feel; it is as stiff as the stiffest of the first `bodies`, while it touches
-    /// one of them.
+    /// from its place() at the last call to that after the last feel() or tick(). Surfaces may differ in how
+    /// stiff they feel; it is as stiff as the stiffest of the first `bodies`, while it touches one of them.
     Press press(double seconds, std::size_t bodies);
 
     /// The state at the last feel() or tick(), so that everything in a picture shows the same moment.
     const Felt& felt() const { return felt_; }
-    /// Where the device is, as far as is known, m.
-    vec3 place() const { return felt_.time > 0 ? vec3(felt_.pose.place) : start_; }
+    /// Where the device is, m; but no deeper in a surface than 1.2 radii, or the ball would fall through.
+    vec3 place() const;
     float radius() const { return float(touch_.settings().radius); }  // m, of its tip
     Touch& touch() { return touch_; }
     bool is_live() const { return loop_.has_value(); }

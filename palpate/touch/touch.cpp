@@ -302,6 +302,7 @@ void Touch::publish(double now) {
     published_.placed = state_.placed;
     published_.warmth = safety_.warmth();
     published_.depth = 0;
+    published_.surface = proxy_.deepest() ? proxy_.deepest()->surface : -1;
     published_.count = 0;
     auto add = [&](const Dent& dent, std::size_t surface) {
         if (published_.count == most_dents) return;

@@ -46,6 +46,7 @@ struct Felt {
     vec3 proxy = vec3(0);              // m
     vec3 force = vec3(0);              // N, on the hand
     float depth = 0;                   // m, how deep it presses, below lasting dents
+    int surface = -1;                  // the one that it presses deepest; below 0: it touches none
     Held held = Held::waiting;         // whether and why the force is reduced,
     Held last_reason = Held::waiting;  // and why it was last let go
     /// With which part of the stiffness the tip presses a simulated surface, 0 to 1: as much of the wanted

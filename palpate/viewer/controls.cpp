@@ -191,7 +191,7 @@ bool Sliders::slide_and_let_go(const char* label, float& value, float low, float
 void Controls::show_hand(Viewer& viewer) {
     Options& options = viewer.options;
     for (const auto& mode : names(Mode{})) {
-        if (mode.value != Mode::pull) ImGui::SameLine();
+        if (mode.value != Mode::hand) ImGui::SameLine();
         if (ImGui::RadioButton(std::string(mode.name).c_str(), options.mode == mode.value))
             options.mode = mode.value;
     }
@@ -200,10 +200,10 @@ void Controls::show_hand(Viewer& viewer) {
     if (ImGui::SliderFloat("tip", &millimetres, 1, 1000 * most, "%.1f mm",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         options.tip = millimetres / 1000;
-    about("the radius of what presses, dents and pins");
+    about("the radius of what touches, grasps and pins");
     if (options.mode == Mode::pin) return;
     choose_device(options.device);
-    about("what moves the hand; a mouse is felt only where it dents");
+    about("what moves the hand; its first button grasps what it touches");
     const DeviceNeeds needs = driver(options.device).needs;
     if (needs == DeviceNeeds::pointer) return;
     const bool log = needs == DeviceNeeds::log;
@@ -212,18 +212,27 @@ void Controls::show_hand(Viewer& viewer) {
     if (ImGui::IsItemDeactivatedAfterEdit()) options.device_file = file_;
 }
 
-void Controls::show_dent_width(Viewer& viewer) {
-    auto show = [&](const char* kind, std::size_t i, const BodyRecipe recipe) {
-        float width = 1000 * float(recipe.feel.dent_width);
-        if (const auto s = sliders_.slide(("dent in " + recipe.name).c_str(), width, 1, 50, "%.1f mm", true);
+void Controls::show_feel(Viewer& viewer) {
+    // A copy, since a change makes another scene.
+    auto stiffness = [&](const char* kind, std::size_t i, const BodyRecipe recipe) {
+        float value = float(recipe.feel.stiffness);
+        if (sliders_.slide_and_let_go(("feel of " + recipe.name).c_str(), value, 10, 5000, "%.0f N/m"))
+            viewer.change({fmt::format("{}.{}.touch.stiffness={}", kind, i + 1, number(value))});
+        about("the stiffness of the contact between it and the hand");
+    };
+    auto width = [&](std::size_t i, const BodyRecipe recipe) {
+        float value = 1000 * float(recipe.feel.dent_width);
+        if (const auto s = sliders_.slide(("dent in " + recipe.name).c_str(), value, 1, 50, "%.1f mm", true);
             s.moved)
-            viewer.change({fmt::format("{}.{}.touch.width={}", kind, i + 1, number(width / 1000))}, s.again);
+            viewer.change({fmt::format("surface.{}.touch.width={}", i + 1, number(value / 1000))}, s.again);
         about("the width of dents in it: their standard deviation");
     };
-    // Fetched each time, since a change makes another scene.
     auto scene = [&]() -> const Scene& { return viewer.experiment()->scene(); };
-    for (std::size_t i = 0; i < scene().bodies.size(); ++i) show("body", i, scene().bodies[i]);
-    for (std::size_t i = 0; i < scene().surfaces.size(); ++i) show("surface", i, scene().surfaces[i]);
+    for (std::size_t i = 0; i < scene().bodies.size(); ++i) stiffness("body", i, scene().bodies[i]);
+    for (std::size_t i = 0; i < scene().surfaces.size(); ++i) {
+        stiffness("surface", i, scene().surfaces[i]);
+        width(i, scene().surfaces[i]);
+    }
 }
 
 void Controls::show_motion(Viewer& viewer) {
@@ -380,7 +389,7 @@ void Controls::show(Viewer& viewer, float scale) {
         const bool has_text = experiment.has_text();  // all that is changed below is changed in it
         part("hand", true, [&] {
             show_hand(viewer);
-            if (has_text && viewer.options.mode == Mode::dent) show_dent_width(viewer);
+            if (has_text && viewer.options.mode == Mode::hand) show_feel(viewer);
         });
         if (has_text && !experiment.scene().bodies.empty())
             part("motion", true, [&] {

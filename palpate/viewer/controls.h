@@ -31,7 +31,7 @@ class Controls {
 
  private:
     void show_hand(Viewer& viewer);
-    void show_dent_width(Viewer& viewer);
+    void show_feel(Viewer& viewer);
     void show_motion(Viewer& viewer);
     void show_step(Viewer& viewer);
     void show_body(Viewer& viewer, std::size_t b);

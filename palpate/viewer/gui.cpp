@@ -19,12 +19,13 @@ struct KeyHelp {
     const char *key, *what;
 };
 constexpr KeyHelp keys[] = {
-    {"left drag", "reach in: pull, press, dent or pin, whichever is chosen"},
+    {"left drag", "touch and press the surface; or pin it, if that is chosen"},
+    {"Shift + left drag", "grasp it and pull"},
     {"left drag beside it, right drag, Alt + left", "turn the view"},
     {"middle drag, Shift + right drag", "shift the view"},
     {"wheel", "nearer or farther; while you hold something: deeper or less deep"},
-    {"1  2  3  4", "pull, press, dent, pin"},
-    {"K", "leave what you hold there and take another hand; again: let all go"},
+    {"1  2", "the hand, pins"},
+    {"K", "leave what you pull there and take another hand; again: let all go"},
     {"Space", "pause and go on"},
     {".", "a single frame"},
     {"R", "from the beginning"},
@@ -48,10 +49,8 @@ struct KeyAction {
     void (*act)(Viewer&);
 };
 constexpr KeyAction actions[] = {
-    {'1', [](Viewer& viewer) { viewer.options.mode = Mode::pull; }},
-    {'2', [](Viewer& viewer) { viewer.options.mode = Mode::press; }},
-    {'3', [](Viewer& viewer) { viewer.options.mode = Mode::dent; }},
-    {'4', [](Viewer& viewer) { viewer.options.mode = Mode::pin; }},
+    {'1', [](Viewer& viewer) { viewer.options.mode = Mode::hand; }},
+    {'2', [](Viewer& viewer) { viewer.options.mode = Mode::pin; }},
     {'K', [](Viewer& viewer) { viewer.keep(); }},
     {' ', [](Viewer& viewer) { viewer.pause(); }},
     {'.', [](Viewer& viewer) { viewer.step_once(); }},
@@ -149,7 +148,9 @@ void show_hint(const Viewer& viewer, float scale) {
     if (viewer.touched() || viewer.importing()) return;
     over_picture(viewer, 14 * scale, 0);
     ImGui::Begin("hint", nullptr, bare | ImGuiWindowFlags_NoInputs);
-    ImGui::Text("Drag the surface with the left button.  The right button turns, the wheel zooms.");
+    ImGui::Text(
+        "Press the surface with the left button, pull it with Shift.  The right button turns, the wheel "
+        "zooms.");
     ImGui::End();
 }
 
@@ -202,9 +203,9 @@ void draw_arrow(const Viewer& viewer, const Arrow& arrow, float scale) {
     list.AddText(corner, IM_COL32_WHITE, text.c_str());
 }
 
-// A ring of the size of the tip that dents.
+// A ring of the size of the tip that touches.
 void draw_tip(const Viewer& viewer, float scale) {
-    if (!viewer.feeling() || viewer.options.mode != Mode::dent) return;
+    if (!viewer.shows_tip()) return;
     const Camera camera = viewer.camera();
     const vec3 centre = viewer.feeling()->felt().proxy, to = camera.look_at - camera.eye;
     const vec3 aside = viewer.options.tip * glm::normalize(glm::cross(to, camera.up));
@@ -260,7 +261,7 @@ int Gui::beside(const Viewer& viewer, int window) const {
 bool Gui::wants_pointer() const { return ImGui::GetIO().WantCaptureMouse; }
 bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
 
-void Gui::draw(Viewer& viewer) {
+void Gui::build(Viewer& viewer) {
     if (!viewer.experiment() && !viewer.importing()) show_start(viewer);
     if (viewer.experiment()) {
         for (const Arrow& arrow : viewer.arrows()) draw_arrow(viewer, arrow, scale_);
@@ -273,8 +274,9 @@ void Gui::draw(Viewer& viewer) {
     if (shows_help) show_help_window(shows_help);
     show_message(viewer, scale_);
     ImGui::Render();
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
+
+void Gui::draw() { ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData()); }
 
 void Gui::key(Viewer& viewer, char key, bool control, bool shift) {
     if (control) {

@@ -15,8 +15,11 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    /// Draws everything for one picture, into the framebuffer that is bound. ImGui's frame must have begun.
-    void draw(Viewer& viewer);
+    /// Lays out everything for one picture, and does what the controls are asked to. ImGui's frame must have
+    /// begun.
+    void build(Viewer& viewer);
+    /// Draws it into the framebuffer that is bound.
+    void draw();
 
     static constexpr char home_key = 1, escape_key = 27;
     /// Handles a key, given by its letter (A to Z), digit or sign.

@@ -39,33 +39,11 @@ Hold Hold::pulling(const Experiment& experiment, const Hit& hit, float radius) {
     return hold;
 }
 
-Hold Hold::tip(const Experiment& experiment, std::size_t number, vec3 place, float radius) {
-    const Body& body = experiment.models().models[number].body;
-    Hold hold;
-    hold.body_ = number;
-    hold.nodes_ = body.count();
-    hold.radius_ = radius;
-    hold.stiffness_ = strength_for(body).pressure * 3.14159265f * radius * radius;
-    hold.fastest_ = width_of(body);
-    hold.place_ = hold.target_ = place;
-    return hold;
-}
-
-Hold Hold::pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius) {
-    const vec3 before = ray.at(std::max(hit.way - 4 * radius, 0.0f));
-    const float way = way_to_touch(before, ray.along, radius, experiment.play().skins())
-                          .value_or(glm::distance(before, hit.place) - radius);
-    Hold hold = tip(experiment, hit.surface, before + way * ray.along, radius);
-    hold.go_to(hold.place_ + 0.5f * radius * ray.along);
-    return hold;
-}
-
 void Hold::add_to(Interaction& hands) {
     const vec3 wish = target_ - place_;
     const float most = fastest_ * float(frame_seconds), length = glm::length(wish);
     const vec3 step = length > most ? wish * (most / length) : wish;
     const vec3 velocity = step / float(frame_seconds);
-    if (presses()) hands.presses.push_back({place_, velocity, radius_, stiffness_});
     for (const Thread& thread : threads_)
         hands.pulls.push_back({body_, {thread.node, place_ + thread.offset, velocity, thread.stiffness}});
     place_ += step;
@@ -73,7 +51,6 @@ void Hold::add_to(Interaction& hands) {
 
 dvec3 Hold::force(const InteractionForces& pushes, std::size_t first) const {
     dvec3 sum(0);
-    if (presses() && first < pushes.presses.size()) sum = pushes.presses[first];
     for (std::size_t i = 0; i < threads_.size() && first + i < pushes.pulls.size(); ++i)
         sum += pushes.pulls[first + i];
     return sum;
@@ -128,19 +105,12 @@ void Holds::keep_fitting(const Experiment& experiment) {
         if (*one && !(*one)->fits(experiment)) one->reset();
 }
 
-void Holds::follow(const Experiment& experiment, const std::optional<Felt>& felt, const Options& options) {
-    const bool presses = options.mode == Mode::press;
-    const bool lets_go = !felt || (!presses && felt->buttons & 1);
-    if (lets_go || (device_ && device_->presses() != presses)) device_.reset();
-    if (lets_go || felt->time == 0) return;
+void Holds::follow(const Experiment& experiment, const std::optional<Felt>& felt, float tip) {
+    if (!felt || !(felt->buttons & 1)) return device_.reset();
     const vec3 place(felt->pose.place);
-    if (!device_ && presses) {
-        device_ = Hold::tip(experiment, 0, place, options.tip);
-    } else if (!device_ && felt->count > felt->lasting) {
-        const auto touched = std::size_t(felt->surfaces[std::size_t(felt->lasting)]);
-        if (touched < experiment.models().models.size())
-            device_ = Hold::pulling(experiment, {.surface = touched, .place = place}, options.tip);
-    }
+    const bool touches = felt->surface >= 0 && std::size_t(felt->surface) < experiment.models().models.size();
+    if (!device_ && touches)
+        device_ = Hold::pulling(experiment, {.surface = std::size_t(felt->surface), .place = place}, tip);
     if (device_) device_->go_to(place);
 }
 
@@ -152,18 +122,18 @@ void Holds::add_to(Interaction& hands) {
 
 std::vector<Arrow> Holds::arrows(const InteractionForces& pushes) const {
     std::vector<Arrow> arrows;
-    std::size_t press = 0, pull = 0;
+    std::size_t pull = 0;
     for (const Hold& hold : all()) {
-        arrows.push_back({hold.place(), vec3(hold.force(pushes, hold.presses() ? press : pull))});
-        (hold.presses() ? press : pull) += hold.presses() ? 1 : hold.pulls();
+        arrows.push_back({hold.place(), vec3(hold.force(pushes, pull))});
+        pull += hold.pulls();
     }
     return arrows;
 }
 
 void Holds::add_to(Traces& traces, const Play& play, float tip) const {
     for (const Hold& hold : all()) {
-        traces.balls.push_back({hold.place(), hold.presses() ? hold.radius() : 0.25f * tip, hand_colour});
-        if (!hold.presses()) traces.add_line(hold.held(play), hold.place());
+        traces.balls.push_back({hold.place(), 0.25f * tip, hand_colour});
+        traces.add_line(hold.held(play), hold.place());
     }
 }
 

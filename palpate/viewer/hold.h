@@ -1,7 +1,6 @@
 #pragma once
 #include "palpate/run/experiment.h"
 #include "palpate/touch/touch.h"
-#include "palpate/viewer/options.h"
 #include "palpate/viewer/orbit.h"
 #include "palpate/viewer/pane.h"
 
@@ -10,21 +9,13 @@
 
 namespace palpate {
 
-/// One hold on a body: the user's hand grasps and pulls it, or presses a tip into it.
+/// One hold on a body: the user's hand grasps and pulls it.
 class Hold {
  public:
     /// Grasps the free nodes within a radius of a place of a body's surface, those near it most firmly; where
     /// there are few, those around the nearest. Throws Error if the body has none.
     static Hold pulling(const Experiment& experiment, const Hit& hit, float radius);
 
-    /// A tip that comes along a view ray, touches the surface at `hit` and presses in by half its radius.
-    static Hold pressing(const Experiment& experiment, const Hit& hit, const Ray& ray, float radius);
-
-    /// A tip anywhere, with a stiffness that suits that body.
-    static Hold tip(const Experiment& experiment, std::size_t body, vec3 place, float radius);
-
-    bool presses() const { return threads_.empty(); }
-    float radius() const { return radius_; }
     vec3 place() const { return place_; }  // m, of the hand
     std::size_t body() const { return body_; }
 
@@ -35,8 +26,7 @@ class Hold {
     /// Adds its action in the next frame, and moves it.
     void add_to(Interaction& hands);
 
-    /// The reaction force on it in the last frame, N, if `first` is the index of its press or of its first
-    /// pull there.
+    /// The reaction force on it in the last frame, N, if `first` is the index of its first pull there.
     dvec3 force(const InteractionForces& pushes, std::size_t first) const;
     std::size_t pulls() const { return threads_.size(); }
 
@@ -56,9 +46,7 @@ class Hold {
 
     std::size_t body_ = 0, nodes_ = 0;
     std::vector<Thread> threads_;
-    float radius_ = 0;     // m, of a tip
-    float stiffness_ = 0;  // N/m, of a tip
-    float fastest_ = 1;    // m/s
+    float fastest_ = 1;  // m/s
     vec3 place_ = vec3(0), target_ = vec3(0);
 };
 
@@ -87,9 +75,9 @@ class Holds {
     /// Ends those whose nodes no longer exist.
     void keep_fitting(const Experiment& experiment);
 
-    /// Lets a device other than a mouse pull or press: it grasps what it touches, until its first button is
-    /// pressed. Without `felt` it does neither.
-    void follow(const Experiment& experiment, const std::optional<Felt>& felt, const Options& options);
+    /// Lets a device other than a mouse pull: it grasps what it touches, as long as its first button is
+    /// pressed. Without `felt` it does not.
+    void follow(const Experiment& experiment, const std::optional<Felt>& felt, float tip);
 
     /// Adds their actions in the next frame.
     void add_to(Interaction& hands);

@@ -7,17 +7,14 @@
 
 namespace palpate {
 
-/// What the pointer or a device does to a body.
+/// What the pointer or a device does.
 enum class Mode {
-    pull,   // grasps a surface and pulls it
-    press,  // pushes a round tip into it, along the view
-    dent,   // feels the surface with haptics, and dents it in the picture; the bodies do not react (2007)
-    pin,    // pins nodes, or releases them
+    hand,  // feels surfaces, presses the bodies that it feels, dents what nothing moves (2007), and pulls
+    pin,   // pins nodes, or releases them
 };
 
 inline std::span<const Named<Mode>> names(Mode) {
-    static constexpr Named<Mode> all[] = {
-        {Mode::pull, "pull"}, {Mode::press, "press"}, {Mode::dent, "dent"}, {Mode::pin, "pin"}};
+    static constexpr Named<Mode> all[] = {{Mode::hand, "hand"}, {Mode::pin, "pin"}};
     return all;
 }
 
@@ -49,8 +46,8 @@ enum class Care {
 
 /// All options of viewing and interacting; they are not part of the simulation.
 struct Options {
-    Mode mode = Mode::pull;
-    float tip = 0.01f;  // m, the radius of the tip that presses and dents
+    Mode mode = Mode::hand;
+    float tip = 0.01f;  // m, the radius of the tip that touches
     Look3d look;
     Care care = Care::automatic;
     bool paused = false;

@@ -30,7 +30,12 @@ void Pane::set(const Quality& quality) {
     renderer_.set(quality);
 }
 
-void Pane::draw(const Experiment& experiment, const Camera& camera, const Look3d& look,
+void Pane::draw(const Camera& camera) {
+    picture_.camera = camera;
+    renderer_.draw(picture_);
+}
+
+void Pane::look(const Experiment& experiment, const Camera& camera, const Look3d& look,
                 const Traces& traces) {
     if (experiment.shapes() != shapes_) {
         renderer_.clear();
@@ -39,7 +44,8 @@ void Pane::draw(const Experiment& experiment, const Camera& camera, const Look3d
         shapes_ = experiment.shapes();
     }
     scenery_->now_of(experiment.scene(), experiment.models());
-    Picture picture = scenery_->picture(experiment.time(), experiment.play(), camera, look.springs);
+    Picture& picture = picture_;
+    picture = scenery_->picture(experiment.time(), experiment.play(), camera, look.springs);
     picture.culls = look.culling;
     const std::size_t skins = experiment.play().skins().size();
     for (std::size_t s = 0; s < skins; ++s) {
@@ -55,17 +61,32 @@ void Pane::draw(const Experiment& experiment, const Camera& camera, const Look3d
         picture.surfaces[s].dents = dents_[s];
     }
     picture.balls.insert(picture.balls.end(), traces.balls.begin(), traces.balls.end());
-    if (!traces.lines.empty()) picture.wires.push_back({traces.points, traces.lines, {}});
-    if (look.wireframe) add_wireframe(experiment, picture);
-    renderer_.draw(picture);
+    traces_ = traces;
+    if (!traces_.lines.empty()) picture.wires.push_back({traces_.points, traces_.lines, {}});
+    if (look.wireframe) add_wireframe(experiment);
+    copy_all();
 }
 
-void Pane::add_wireframe(const Experiment& experiment, Picture& picture) {
+void Pane::copy_all() {
+    std::size_t copies = 0;
+    auto copy = [&](std::span<const vec3>& list) {
+        copies_[copies].assign(list.begin(), list.end());
+        list = copies_[copies++];
+    };
+    copies_.resize(std::max(copies_.size(), 4 * picture_.surfaces.size() + picture_.wires.size()));
+    for (Surface& surface : picture_.surfaces)
+        for (auto* list :
+             {&surface.positions, &surface.normals, &surface.nodes.positions, &surface.nodes.normals})
+            copy(*list);
+    for (Wires& wires : picture_.wires) copy(wires.points);
+}
+
+void Pane::add_wireframe(const Experiment& experiment) {
     const std::vector<Skin>& skins = experiment.play().skins();
     if (edges_.empty())
         for (const Skin& skin : skins) edges_.push_back(edges_of(*skin.triangles));
     for (std::size_t s = 0; s < skins.size(); ++s)
-        picture.wires.push_back({skins[s].positions, edges_[s], vec3(0.02f)});
+        picture_.wires.push_back({skins[s].positions, edges_[s], vec3(0.02f)});
 }
 
 }  // namespace palpate

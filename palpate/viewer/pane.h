@@ -32,7 +32,10 @@ class Pane {
     void resize(ivec2 size);
     void set(const Quality& quality);
 
-    void draw(const Experiment& experiment, const Camera& camera, const Look3d& look, const Traces& traces);
+    /// Takes a copy of what shall be drawn, so that the experiment may advance on another thread during
+    /// draw().
+    void look(const Experiment& experiment, const Camera& camera, const Look3d& look, const Traces& traces);
+    void draw(const Camera& camera);
 
     /// Copies it into the framebuffer that is bound, with its lower left corner there.
     void show(ivec2 corner) const { renderer_.show(corner); }
@@ -40,7 +43,8 @@ class Pane {
     ivec2 size() const { return size_; }
 
  private:
-    void add_wireframe(const Experiment& experiment, Picture& picture);
+    void add_wireframe(const Experiment& experiment);
+    void copy_all();
 
     Renderer renderer_;
     ivec2 size_;
@@ -49,6 +53,9 @@ class Pane {
     Experiment::Shapes shapes_;              // the shapes that are drawn
     std::vector<std::vector<uvec2>> edges_;  // of the surfaces, made on first use
     std::vector<std::vector<Dent>> dents_;
+    Traces traces_;
+    Picture picture_;
+    std::vector<std::vector<vec3>> copies_;  // of the positions and normals in it
 };
 
 }  // namespace palpate

@@ -78,12 +78,18 @@ bool Session::compare(Compared& asked) {
 
 bool Session::advance(const Interaction& hands) {
     if (replay_) return replay_frame();
-    auto go_on = [&](Experiment& one, const std::string& before, const std::string& after) {
-        if (!one.advance(hands)) message_.say(before + one.trouble() + after, true);
-    };
-    go_on(*experiment_, "", "; it is held where it was last sound");
-    if (beside_ && beside_->trouble().empty()) go_on(*beside_, "on the right, ", "");
+    experiment_->advance(hands);
+    if (beside_) beside_->advance(hands);
     return true;
+}
+
+void Session::say_trouble() {
+    auto say = [&](const std::string& trouble, std::string& said, const char* before, const char* after) {
+        if (!trouble.empty() && trouble != said) message_.say(before + trouble + after, true);
+        said = trouble;
+    };
+    say(experiment_->trouble(), said_, "", "; it is held where it was last sound");
+    say(beside_ ? beside_->trouble() : "", said_beside_, "on the right, ", "");
 }
 
 bool Session::replay_frame() {

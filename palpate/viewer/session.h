@@ -17,6 +17,7 @@ class Session {
 
     Experiment* experiment() { return experiment_.get(); }
     const Experiment* experiment() const { return experiment_.get(); }
+    Experiment* beside() { return beside_.get(); }
     const Experiment* beside() const { return beside_.get(); }
 
     void open(SceneText source, std::vector<Change> changes);
@@ -42,6 +43,9 @@ class Session {
     /// frame. Throws Error.
     bool advance(const Interaction& hands);
 
+    /// Says, once, what stopped one of them since the last call.
+    void say_trouble();
+
  private:
     bool replay_frame();
 
@@ -50,6 +54,7 @@ class Session {
     std::unique_ptr<Import> import_;
     std::unique_ptr<Experiment> experiment_, beside_;
     Compared compared_;                         // what beside_ was made for
+    std::string said_, said_beside_;            // of their trouble
     std::optional<Recording> replay_, coming_;  // what is replayed; what import_ is for
 };
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate {
 
@@ -104,21 +105,56 @@ void Viewer::advance(int frames) {
     holds_.keep_fitting(*experiment());
     if (drag_ == Drag::hold && !is_holding()) drag_ = Drag::none;
     if (session_.compare(options.compared)) views_.wake();
+    if (std::exchange(went_on_, false)) frames = 0;
     for (int f = 0; f < frames && !options.paused && (replaying() || experiment()->trouble().empty()); ++f)
         one_frame();
+    session_.say_trouble();
+    feeling_.live(session_, may_be_live());
     message_.attempt([&] { feeling_.advance(*experiment(), options, sight()); });
     readings_.measure(*experiment(), !options.paused);
+}
+
+bool Viewer::may_be_live() const {
+    return experiment() && !options.paused && !replaying() && experiment()->trouble().empty();
+}
+
+// What else hands do in the next frame.
+Interaction Viewer::hands() {
+    Interaction hands;
+    if (replaying()) return hands;
+    holds_.follow(*experiment(), feeling_.device(), options.tip);
+    holds_.add_to(hands);
+    return hands;
+}
+
+// A film shows every frame of the scene, so it does not go on by itself.
+void Viewer::go_on() {
+    LiveTouch* live = feeling_.live(session_, may_be_live());
+    if (!live || filming() || on_gpu(experiment()->models().simulation.backend)) return;
+    message_.attempt([&] {
+        live->set(hands());
+        live->go_on();
+        went_on_ = true;
+    });
+}
+
+void Viewer::hold_still() {
+    LiveTouch* live = feeling_.live();
+    if (!live) return;
+    message_.attempt([&] { live->hold_still(); });
+    views_.wake();
 }
 
 void Viewer::one_frame() {
     bool goes_on = false;
     const bool done = message_.attempt([&] {
-        Interaction hands;
-        if (!replaying()) {
-            holds_.follow(*experiment(), feeling_.device(*experiment(), options), options);
-            holds_.add_to(hands);
+        if (LiveTouch* live = feeling_.live(session_, !replaying())) {
+            live->set(hands());
+            live->advance();
+            goes_on = true;
+        } else {
+            goes_on = session_.advance(hands());
         }
-        goes_on = session_.advance(hands);
     });
     if (!done) session_.stop_replaying();  // it would fail again
     if (!goes_on) options.paused = true;
@@ -137,10 +173,10 @@ void Viewer::press(Button button, bool shift, bool alt) {
     else if (button == Button::right || alt)
         drag_ = Drag::turn;
     else
-        message_.attempt([&] { reach_in(); });
+        message_.attempt([&] { reach_in(shift); });
 }
 
-void Viewer::reach_in() {
+void Viewer::reach_in(bool pulls) {
     const auto hit = pick(sight().ray(), experiment()->play().skins());
     if (!hit) {
         drag_ = Drag::turn;  // on the background
@@ -148,23 +184,19 @@ void Viewer::reach_in() {
     }
     touched_ = true;
     selected_.assign({hit->place - 4 * options.tip, hit->place + 4 * options.tip});
-    if (options.mode == Mode::dent) {
-        if (feeling_.begin_dent(*experiment(), options.tip, sight())) drag_ = Drag::hold;
-    } else if (hit->surface >= experiment()->models().models.size()) {
-        message_.say("nothing moves this surface; it can be dented");
-    } else if (replaying()) {
+    const bool moves = hit->surface < experiment()->models().models.size();
+    if (moves && replaying()) {
         message_.say("a recording is being replayed; press R to start over");
+    } else if (options.mode == Mode::hand && !pulls) {
+        if (feeling_.begin_press(*experiment(), options.tip, sight())) drag_ = Drag::hold;
+    } else if (!moves) {
+        message_.say("nothing moves this surface; it can be touched");
+    } else if (options.mode == Mode::pin) {
+        pin_at(*hit);
     } else {
-        options.mode == Mode::pin ? pin_at(*hit) : pull_or_press(*hit);
+        holds_.take(Hold::pulling(*experiment(), *hit, options.tip), sight());
+        drag_ = Drag::hold;
     }
-}
-
-void Viewer::pull_or_press(const Hit& hit) {
-    const Hold hold = options.mode == Mode::pull
-                          ? Hold::pulling(*experiment(), hit, options.tip)
-                          : Hold::pressing(*experiment(), hit, sight().ray(), options.tip);
-    holds_.take(hold, sight());
-    drag_ = Drag::hold;
 }
 
 void Viewer::pin_at(const Hit& hit) {
@@ -186,7 +218,7 @@ void Viewer::release(Button button) {
     if (button != drag_button_) return;
     views_.wake();
     if (drag_ == Drag::hold) holds_.release();
-    if (experiment()) feeling_.end_dent(*experiment(), options.tip, sight());
+    if (experiment()) feeling_.end_press(*experiment(), options.tip, sight());
     drag_ = Drag::none;
 }
 
@@ -215,7 +247,7 @@ void Viewer::wheel(float notches) {
         holds_.deepen(notches * 0.25f * options.tip);
         holds_.follow(sight());
         views_.wake();
-    } else if (feeling_.is_denting()) {
+    } else if (feeling_.is_pressing()) {
         feeling_.deepen(*experiment(), notches, options.tip, sight());
         views_.wake();
     } else {
@@ -225,7 +257,7 @@ void Viewer::wheel(float notches) {
 }
 
 void Viewer::keep() {
-    if (feeling_.is_denting()) return;
+    if (feeling_.is_pressing()) return;
     views_.wake();
     if (!holds_.has_own()) return let_go();
     holds_.leave();
@@ -251,7 +283,7 @@ void Viewer::reset_camera() {
 std::vector<Arrow> Viewer::arrows() const {
     if (!experiment()) return {};
     std::vector<Arrow> arrows = holds_.arrows(experiment()->play().interaction_forces());
-    if (const auto arrow = feeling_.arrow(); arrow && options.mode == Mode::dent) arrows.push_back(*arrow);
+    if (const auto arrow = feeling_.arrow()) arrows.push_back(*arrow);
     return arrows;
 }
 
@@ -259,13 +291,17 @@ Traces Viewer::traces() const {
     const Play& play = experiment()->play();
     Traces traces;
     holds_.add_to(traces, play, options.tip);
-    if (options.mode == Mode::dent) feeling_.add_to(traces, play.skins().size(), options.tip);
+    feeling_.add_to(traces, play.skins().size(), options.tip);
     return traces;
+}
+
+void Viewer::look() {
+    if (experiment()) views_.look(traces(), feeling_.is_seen() || filming(), !filming());
 }
 
 void Viewer::draw() {
     if (!experiment()) return;
-    const auto took = views_.draw(traces(), feeling() || filming(), !filming());
+    const auto took = views_.draw();
     if (took && !options.paused) readings_.draw.add(*took);
 }
 

@@ -71,10 +71,20 @@ class Viewer {
 
     // ---- advancing ----
 
-    /// Advances by frames of 1/60 s, unless paused; and takes what has been built meanwhile.
+    /// Advances by frames of 1/60 s, unless paused or go_on() did that; and takes what has been built
+    /// meanwhile.
     void advance(int frames);
-    /// Draws into the framebuffer that is bound.
+    /// Takes a copy of what shall be drawn,
+    void look();
+    /// and draws it into the framebuffer that is bound.
     void draw();
+
+    /// While a hand presses bodies, they advance on a thread of their own from here to hold_still(); in
+    /// between, nothing but draw() may be called.
+    void go_on();
+    void hold_still();
+    /// Whether go_on() has an effect.
+    bool is_live() { return may_be_live() && feeling_.live(); }
     /// The picture in full quality, without the window's frame or controls.
     Image image();
 
@@ -87,22 +97,24 @@ class Viewer {
     const Message& message() const { return message_; }
     std::vector<Arrow> arrows() const;
     std::vector<Hold> holds() const { return holds_.all(); }
-    bool is_holding() const { return holds_.has_own() || feeling_.is_denting(); }
+    bool is_holding() const { return holds_.has_own() || feeling_.is_pressing(); }
     bool touched() const { return touched_; }  // whether the user has interacted yet
     const FeltHand* feeling() const { return feeling_.hand(); }
+    bool shows_tip() const { return feeling_.is_seen(); }
     const Readings& readings() const { return readings_; }
 
  private:
     enum class Drag { none, turn, pan, hold };
 
     Sight sight() const { return views_.sight(pointer_); }
-    void reach_in();
-    void pull_or_press(const Hit& hit);
+    void reach_in(bool pulls);
+    bool may_be_live() const;
     void pin_at(const Hit& hit);
     void turned();
     void let_go();
     void alter(const std::function<void()>& how, const std::string& said = {});
     void one_frame();
+    Interaction hands();
     Traces traces() const;
 
     Message message_;
@@ -118,6 +130,7 @@ class Viewer {
     Button drag_button_ = Button::left;  // the button that began it
     bool touched_ = false;
     std::vector<vec3> selected_;  // m, around what was last grasped
+    bool went_on_ = false;        // since the last advance()
 };
 
 }  // namespace palpate

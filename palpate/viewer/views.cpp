@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -81,49 +82,62 @@ Quality Views::quality(bool may_be_draft) const {
     return options_.care == Care::draft || hurry ? draft_quality : Quality{};
 }
 
-std::optional<float> Views::draw(const Traces& traces, bool always, bool may_be_draft) {
-    const double start = now();
-    const Experiment::Shapes before = drawn_of_;
+void Views::look(const Traces& traces, bool always, bool may_be_draft) {
     const Drawing as{options_.look, view_size(), quality(may_be_draft)};
     const bool is_drawn = options_.paused && drawn_ > moved_ && !options_.stereo && drawn_as_ == as;
-    if (always || !is_drawn) {
-        draw_panes(as.quality, traces);
+    if (!always && is_drawn) return;
+    look(as.quality, traces);
+    drawn_as_ = as;
+}
+
+void Views::look(const Quality& quality, const Traces& traces) {
+    const Experiment &experiment = *session_.experiment(), *beside = session_.beside();
+    is_due_ = true;
+    is_first_ |= drawn_of_ != experiment.shapes();
+    drawn_of_ = experiment.shapes();
+    pane_.resize(view_size());
+    pane_.set(quality);
+    pane_.look(experiment, camera(), options_.look, traces);
+    other_is_shown_ = beside != nullptr;
+    if (!beside) return;
+    other_pane_.resize(view_size());
+    other_pane_.set(quality);
+    other_pane_.look(*beside, camera(), options_.look, traces);
+}
+
+std::optional<float> Views::draw() {
+    const double start = now();
+    if (is_due_) {
+        draw_panes();
         drawn_ = start;
-        drawn_as_ = as;
     }
     pane_.show({left_, 0});
-    if (session_.beside()) other_pane_.show({left_ + view_size().x, 0});
+    if (other_is_shown_) other_pane_.show({left_ + view_size().x, 0});
     context_.finish();
-    if (before != drawn_of_) return std::nullopt;  // computing the ambient occlusion took time
+    is_due_ = false;
+    if (std::exchange(is_first_, false)) return std::nullopt;  // computing the ambient occlusion took time
     return float(1000 * (now() - start));
 }
 
 // Stereo uses the left view's renderer twice, so its picture is copied at once.
-void Views::draw_panes(const Quality& quality, const Traces& traces) {
-    const Experiment &experiment = *session_.experiment(), *beside = session_.beside();
-    drawn_of_ = experiment.shapes();
-    pane_.resize(view_size());
-    pane_.set(quality);
-    if (options_.stereo && !beside) {
-        pane_.draw(experiment, eye_of(camera(), 1), options_.look, traces);
+void Views::draw_panes() {
+    if (is_stereo()) {
+        pane_.draw(eye_of(camera(), 1));
         pane_.show({left_ + view_size().x, 0});
-        pane_.draw(experiment, eye_of(camera(), -1), options_.look, traces);
-        return;
+        return pane_.draw(eye_of(camera(), -1));
     }
-    pane_.draw(experiment, camera(), options_.look, traces);
-    if (!beside) return;
-    other_pane_.resize(view_size());
-    other_pane_.set(quality);
-    other_pane_.draw(*beside, camera(), options_.look, traces);
+    pane_.draw(camera());
+    if (other_is_shown_) other_pane_.draw(camera());
 }
 
 Image Views::image(const Traces& traces) {
     drawn_ = 0;  // the panes no longer hold what the window shows
-    draw_panes({}, traces);
+    look(Quality{}, traces);
+    draw_panes();
     const Image left = pane_.image();
-    if (session_.beside()) return beside_each_other(left, other_pane_.image());
-    if (!options_.stereo) return left;
-    pane_.draw(*session_.experiment(), eye_of(camera(), 1), options_.look, traces);
+    if (other_is_shown_) return beside_each_other(left, other_pane_.image());
+    if (!is_stereo()) return left;
+    pane_.draw(eye_of(camera(), 1));
     return beside_each_other(left, pane_.image());
 }
 

@@ -29,10 +29,13 @@ class Views {
     /// Must be called when something has moved or looks different.
     void wake();
 
-    /// Draws into the framebuffer that is bound, as a draft if the options say so. `always`: even if nothing
-    /// has moved. Returns the ms that it took; nothing for the first picture of new meshes, which takes
+    /// Takes a copy of what shall be drawn, as a draft if the options say so. `always`: even if nothing has
+    /// moved.
+    void look(const Traces& traces, bool always, bool may_be_draft);
+    /// Draws that into the framebuffer that is bound. The experiments may advance on another thread
+    /// meanwhile. Returns the ms that it took; nothing for the first picture of new meshes, which takes
     /// longer.
-    std::optional<float> draw(const Traces& traces, bool always, bool may_be_draft);
+    std::optional<float> draw();
     /// The same in full quality, without the window's frame or controls.
     Image image(const Traces& traces);
 
@@ -44,7 +47,9 @@ class Views {
         bool operator==(const Drawing&) const = default;
     };
     Quality quality(bool may_be_draft) const;
-    void draw_panes(const Quality& quality, const Traces& traces);
+    void look(const Quality& quality, const Traces& traces);
+    bool is_stereo() const { return options_.stereo && !other_is_shown_; }
+    void draw_panes();
 
     const gl::Context& context_;
     const Session& session_;
@@ -53,6 +58,9 @@ class Views {
     int left_ = 0;
     Pane pane_, other_pane_;
     double moved_ = 0;             // s, when something last moved
+    bool other_is_shown_ = false;  // beside the other
+    bool is_due_ = false;          // a picture, since look()
+    bool is_first_ = false;        // it will be the first of new meshes
     double drawn_ = 0;             // s, when the picture was last drawn,
     Drawing drawn_as_;             // how,
     Experiment::Shapes drawn_of_;  // and of what

@@ -2,6 +2,7 @@
 
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
+#include "palpate/base/realtime.h"
 #include "palpate/viewer/show.h"
 
 #define GLFW_INCLUDE_NONE  // epoxy has OpenGL's names
@@ -191,7 +192,13 @@ bool Window::round() {
     // Waits until it is due, and for longer if nothing moves.
     const bool idle = p.viewer.options.paused && !p.viewer.importing() && !p.viewer.is_holding();
     const double wait = p.last + (idle ? 3 : 1) * round_seconds - now();
-    wait > 1e-4 ? glfwWaitEventsTimeout(wait) : glfwPollEvents();
+    if (p.viewer.is_live()) {
+        sleep_until(p.last + round_seconds);
+        p.viewer.hold_still();
+        glfwPollEvents();
+    } else {
+        wait > 1e-4 ? glfwWaitEventsTimeout(wait) : glfwPollEvents();
+    }
     if (glfwWindowShouldClose(p.window)) return false;
     const double time = now();
     p.due = std::min(p.due + (time - p.last) / round_seconds, double(most_frames));
@@ -203,13 +210,16 @@ bool Window::round() {
     if (size.x < 1 || size.y < 1) return true;  // it is minimised
     const int beside = p.gui.beside(p.viewer, size.x);
     p.viewer.resize({size.x - beside, size.y}, beside);
+    p.begin_gui();
+    p.viewer.look();
+    p.gui.build(p.viewer);
+    p.viewer.go_on();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, size.x, size.y);
     glClearColor(0.16f, 0.18f, 0.21f, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     p.viewer.draw();
-    p.begin_gui();
-    p.gui.draw(p.viewer);
+    p.gui.draw();
     glfwSwapBuffers(p.window);
     return true;
 }

@@ -78,13 +78,13 @@ class Person {
         XSync(display_, False);
     }
     void key(KeySym symbol, bool control = false) {
-        auto press = [&](KeySym one, bool down) {
-            XTestFakeKeyEvent(display_, XKeysymToKeycode(display_, one), down, 0);
-        };
-        if (control) press(XK_Control_L, true);
-        press(symbol, true);
-        press(symbol, false);
-        if (control) press(XK_Control_L, false);
+        if (control) hold(XK_Control_L, true);
+        hold(symbol, true);
+        hold(symbol, false);
+        if (control) hold(XK_Control_L, false);
+    }
+    void hold(KeySym symbol, bool down) {
+        XTestFakeKeyEvent(display_, XKeysymToKeycode(display_, symbol), down, 0);
         XSync(display_, False);
     }
     void resize(unsigned width, unsigned height) {

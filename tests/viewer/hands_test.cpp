@@ -5,6 +5,7 @@
 #include "tests/shapes.h"
 #include "tests/viewer/viewer_test.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -129,20 +130,82 @@ TEST_F(ViewerTest, AHandIsWhereThePointerIs) {
 
 TEST_F(ViewerTest, APressPushesInAndTheWheelDeeper) {
     open("box", {"simulation.gravity=[0,0,0]"});
-    viewer.options.mode = Mode::press;
     viewer.move_pointer(middle());
+    viewer.advance(1);
     viewer.press(Button::left);
-    ASSERT_EQ(viewer.holds().size(), 1u);
-    for (int f = 0; f < 60; ++f) viewer.advance(1);
-    const float first = glm::length(viewer.arrows()[0].force);
-    EXPECT_GT(first, 0);
+    EXPECT_TRUE(viewer.is_holding());
+    const double patience = viewer.experiment()->time() + 20;
+    auto wait_for = [&](float newtons) {
+        while (force() < newtons && viewer.experiment()->time() < patience) live(10);
+    };
+    wait_for(0.05f);
+    for (int i = 0; i < 100; ++i) live(10);  // it comes to rest
+    const float first = force();
+    EXPECT_GT(first, 0.05f);
     const vec3 forward = glm::normalize(viewer.camera().look_at - viewer.camera().eye);
-    EXPECT_LT(glm::dot(viewer.arrows()[0].force, forward), 0);  // against the eye's line
-    viewer.wheel(1);
-    for (int f = 0; f < 60; ++f) viewer.advance(1);
-    EXPECT_GT(glm::length(viewer.arrows()[0].force), first);
+    EXPECT_LT(glm::dot(vec3(viewer.experiment()->play().interaction_forces().presses.at(0)), forward), 0);
+    EXPECT_TRUE(viewer.feeling()->felt().count == 0);  // no dent in what moves
+    viewer.wheel(2);
+    wait_for(1.1f * first);
+    EXPECT_GT(force(), 1.1f * first);
     viewer.release(Button::left);
-    EXPECT_TRUE(viewer.arrows().empty());
+    viewer.advance(1);
+    viewer.advance(1);
+    EXPECT_TRUE(viewer.experiment()->play().interaction_forces().presses.empty());
+}
+
+// However soft a body is and however deep one pushes: the ball stays at its surface.
+TEST_F(ViewerTest, TheHandIsNotLostInside) {
+    open("box", {"simulation.gravity=[0,0,0]", "body.1.youngs_modulus=1000"});
+    viewer.options.tip = 0.006f;
+    viewer.move_pointer(middle());
+    viewer.advance(1);
+    viewer.press(Button::left);
+    viewer.wheel(20);
+    float most = 0;
+    for (int f = 0; f < 100; ++f) {
+        viewer.move_pointer(middle() + vec2(std::sin(0.05f * float(f)) * 30, 0));
+        live(10);
+        const FeltHand& hand = *viewer.feeling();
+        ASSERT_TRUE(glm::distance(hand.place(), hand.felt().proxy) < 1.21f * viewer.options.tip) << f;
+        most = std::max(most, force());
+    }
+    EXPECT_GT(most, 0.05f);
+    EXPECT_TRUE(viewer.experiment()->trouble().empty());
+    EXPECT_EQ(viewer.experiment()->report().bodies[0].inverted_cells, 0u);
+}
+
+// On a thread of its own it advances while pictures are drawn.
+TEST_F(ViewerTest, ItGoesOnWhileItIsDrawn) {
+    open("box", {"simulation.gravity=[0,0,0]"});
+    viewer.move_pointer(middle());
+    viewer.advance(1);
+    viewer.press(Button::left);
+    const double start = viewer.experiment()->time();
+    float most = 0;
+    for (double time = 0; time < 0.5 || (most < 0.02f && time < 30);) {
+        viewer.hold_still();
+        viewer.advance(1);
+        viewer.move_pointer(middle());
+        viewer.look();
+        viewer.go_on();
+        ASSERT_TRUE(viewer.is_live());
+        viewer.draw();
+        viewer.hold_still();
+        most = std::max(most, force());
+        time = viewer.experiment()->time() - start;
+    }
+    EXPECT_GE(most, 0.02f);
+    viewer.save(Output::picture);
+    viewer.release(Button::left);
+    viewer.advance(1);
+    EXPECT_FALSE(viewer.is_live());
+    const double still = viewer.experiment()->time();
+    viewer.go_on();
+    viewer.draw();
+    viewer.hold_still();
+    EXPECT_EQ(viewer.experiment()->time(), still);
+    EXPECT_TRUE(viewer.experiment()->trouble().empty());
 }
 
 TEST_F(ViewerTest, AsManyHandsAsOneLikes) {
@@ -150,7 +213,7 @@ TEST_F(ViewerTest, AsManyHandsAsOneLikes) {
     int held = 0;
     for (int i = 0; i < 12; ++i) {
         viewer.move_pointer(middle() + vec2(6 * i - 30, 0));
-        viewer.press(Button::left);
+        viewer.press(Button::left, true);
         if (viewer.is_holding()) ++held;
         viewer.keep();
         viewer.release(Button::left);
@@ -200,10 +263,9 @@ TEST_F(ViewerTest, PinsAreSetUndoneAndSetAgain) {
 }
 
 TEST_F(ViewerTest, TheHandThatDentsFeelsAndIsSeen) {
-    open("box", {"simulation.gravity=[0,0,0]"});
+    open_still();
     viewer.options.look.culling = true;
     const Image before = viewer.image();
-    viewer.options.mode = Mode::dent;
     viewer.move_pointer(middle());
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
@@ -213,7 +275,7 @@ TEST_F(ViewerTest, TheHandThatDentsFeelsAndIsSeen) {
     EXPECT_GT(viewer.feeling()->loop().timing().periods.count(), 0u);
     viewer.release(Button::left);
     wait_until(viewer, 1, [&] { return viewer.feeling()->felt().count == 0; });
-    viewer.options.mode = Mode::pull;
+    viewer.options.mode = Mode::pin;
     viewer.advance(1);
     EXPECT_FALSE(viewer.feeling());
     EXPECT_TRUE(difference(viewer.image(), before) < 0.02);
@@ -221,10 +283,9 @@ TEST_F(ViewerTest, TheHandThatDentsFeelsAndIsSeen) {
 
 // A surface in which dents stay; a hand that only goes by leaves none, and what one leaves can be taken back.
 TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
-    open("box", {"simulation.gravity=[0,0,0]", "body.1.touch.yield=0", "body.1.touch.width=0.004"});
+    open_still({"surface.1.touch.yield=0", "surface.1.touch.width=0.004"});
     viewer.options.paused = true;
     viewer.options.tip = 0.004f;
-    viewer.options.mode = Mode::dent;
     auto until = [&](auto holds) { wait_until(viewer, 1, holds); };
     auto ticks = [&] { return viewer.feeling() ? viewer.feeling()->loop().timing().periods.count() : 0; };
     auto lasting = [&] { return viewer.feeling()->felt().lasting; };
@@ -235,7 +296,7 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
         until([&, before = ticks()] { return ticks() > before + 30; });
     }
     viewer.move_pointer(middle());
-    until([&] { return viewer.feeling() && viewer.feeling()->felt().time > 0; });
+    until([&, before = ticks()] { return ticks() > before + 100; });
     EXPECT_EQ(lasting(), 0);
     EXPECT_FALSE(viewer.can_undo());
     const Image untouched = viewer.image();
@@ -255,7 +316,7 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
     for (int i = 0; i < viewer.feeling()->felt().count; ++i)
         EXPECT_LE(viewer.feeling()->felt().dents[std::size_t(i)].depth, 0.0041f);
     // A change of the scene that came later goes first.
-    viewer.change({"body.1.damping=3"});
+    viewer.change({"surface.1.touch.stiffness=250"});
     viewer.undo();
     viewer.advance(1);
     const int both = lasting();
@@ -264,7 +325,8 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
     EXPECT_GT(lasting(), 0);
     EXPECT_TRUE(viewer.can_undo());
     viewer.restart();
-    until([&] { return lasting() == 0; });
+    viewer.move_pointer(middle());
+    until([&, before = ticks()] { return lasting() == 0 && ticks() > before + 100; });
     EXPECT_FALSE(viewer.can_undo());
     viewer.options.paused = true;
     EXPECT_TRUE(difference(viewer.image(), untouched) < 0.02);
@@ -272,7 +334,6 @@ TEST_F(ViewerTest, WhatStaysOfDentsIsTakenBack) {
 
 TEST_F(ViewerTest, ASliderLeavesTheHandsDeviceOpen) {
     open("box", {"simulation.gravity=[0,0,0]"});
-    viewer.options.mode = Mode::dent;
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling()) << viewer.message().text;
     const FeltHand* hand = viewer.feeling();
@@ -293,7 +354,6 @@ TEST_F(ViewerTest, ASliderLeavesTheHandsDeviceOpen) {
 // All of a picture is of one tick, though the loop goes on.
 TEST_F(ViewerTest, APictureShowsOneTick) {
     open("box", {"simulation.gravity=[0,0,0]"});
-    viewer.options.mode = Mode::dent;
     viewer.move_pointer(middle());
     viewer.advance(1);
     ASSERT_TRUE(viewer.feeling());
@@ -309,7 +369,6 @@ TEST_F(ViewerTest, APictureShowsOneTick) {
 TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     open("box", {"simulation.gravity=[0,0,0]"});
     const Scratch scratch;
-    viewer.options.mode = Mode::dent;
     viewer.options.device = "script";
     viewer.options.device_file = (scratch / "nowhere.csv").string();
     viewer.advance(1);
@@ -317,7 +376,6 @@ TEST_F(ViewerTest, AnotherDeviceOrWhyNot) {
     EXPECT_TRUE(viewer.message().bad);
     EXPECT_NE(viewer.message().text.find("nowhere.csv"), std::string::npos);
     write_text(scratch / "path.csv", "0,0.1,0.2,0.02\n1,0.1,0.2,0.02\n");
-    viewer.options.mode = Mode::dent;
     viewer.options.device = "script";
     viewer.options.device_file = (scratch / "path.csv").string();
     viewer.advance(1);
@@ -330,23 +388,44 @@ TEST_F(ViewerTest, ADevicePressesAndPullsAsWell) {
     open("box", {"simulation.gravity=[0,0,0]"});
     const Scratch scratch;
     // It comes down on the beam's upper side, waits, and goes up.
-    write_text(scratch / "path.csv", "0,0.15,0.09,0.025\n0.3,0.15,0.045,0.025\n6000,0.15,0.045,0.025\n");
+    std::string path;
+    for (int i = 0; i < 1000; ++i)
+        for (const auto& [after, height] : {std::pair(0.0, 0.09), {0.2, 0.09}, {0.5, 0.045}, {2.8, 0.045}})
+            path += fmt::format("{},0.15,{},0.025\n", 3 * i + after, height);
+    write_text(scratch / "path.csv", path);
     viewer.options.device = "script";
     viewer.options.device_file = (scratch / "path.csv").string();
-    viewer.options.mode = Mode::press;
     const double before = state().positions[456].y;
     wait_until(viewer, 1, [&] { return state().positions[456].y < before - 0.001; });
+    wait_until(viewer, 1, [&] { return viewer.feeling()->felt().force.y > 0.01f; });
     ASSERT_EQ(viewer.arrows().size(), 1u);
-    EXPECT_GT(viewer.arrows()[0].force.y, 0);
-    viewer.options.device_file = (scratch / "path.csv").string();
-    viewer.options.mode = Mode::pull;
-    wait_until(viewer, 1, [&] { return !viewer.holds().empty() && !viewer.holds()[0].presses(); });
-    ASSERT_EQ(viewer.holds().size(), 1u);
-    EXPECT_GT(viewer.holds()[0].pulls(), 0u);
     viewer.options.device = "mouse";
     viewer.advance(2);
     EXPECT_TRUE(viewer.holds().empty());
-    EXPECT_FALSE(viewer.feeling());
+    EXPECT_TRUE(viewer.arrows().empty());
+}
+
+// It grasps what it touches while its first button is pressed.
+TEST_F(ViewerTest, ADevicesButtonGrasps) {
+    open("box", {"simulation.gravity=[0,0,0]"});
+    Holds holds;
+    Felt felt;
+    felt.pose.place = dvec3(0.15, 0.05, 0.025);
+    felt.buttons = 1;
+    holds.follow(*viewer.experiment(), felt, 0.01f);
+    EXPECT_TRUE(holds.all().empty());  // it touches nothing
+    felt.surface = 0;
+    holds.follow(*viewer.experiment(), felt, 0.01f);
+    ASSERT_EQ(holds.all().size(), 1u);
+    EXPECT_GT(holds.all()[0].pulls(), 0u);
+    felt.surface = -1;
+    felt.pose.place.y = 0.06;
+    holds.follow(*viewer.experiment(), felt, 0.01f);
+    ASSERT_EQ(holds.all().size(), 1u);
+    EXPECT_EQ(holds.all()[0].target().y, 0.06f);
+    felt.buttons = 0;
+    holds.follow(*viewer.experiment(), felt, 0.01f);
+    EXPECT_TRUE(holds.all().empty());
 }
 
 }  // namespace

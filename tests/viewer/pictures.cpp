@@ -25,10 +25,14 @@ class Photographer {
         const double until = viewer().experiment()->time() + seconds;
         while (viewer().experiment()->time() < until) window_.round();
     }
-    void drag(vec2 from, vec2 to) {
+    // With Shift it pulls.
+    void drag(vec2 from, vec2 to, bool pulls = true) {
         person_.move(from);
         rounds(2);
+        if (pulls) person_.hold(XK_Shift_L, true);
         person_.button(1, true);
+        rounds(1);
+        if (pulls) person_.hold(XK_Shift_L, false);
         for (int i = 1; i <= 10; ++i) {
             person_.move(glm::mix(from, to, float(i) / 10));
             rounds(1);
@@ -78,15 +82,13 @@ void take_all(const std::filesystem::path& folder) {
     photographer.let_go();
 
     photographer.open("catheter");
-    person.key(XK_3);
     photographer.viewer().options.tip = 0.008f;
     photographer.wait(0.1);
-    photographer.drag({650, 240}, {645, 245});
+    photographer.drag({650, 240}, {645, 245}, false);
     for (int i = 0; i < 5; ++i) person.button(4, true), person.button(4, false), photographer.rounds(2);
     photographer.wait(1.5);
     photographer.take("viewer-dent.png");
     photographer.let_go();
-    person.key(XK_1);
 
     photographer.open("box");
     photographer.viewer().options.compared = {.with = Compared::With::mapping, .mapping = Mapping::constant};

@@ -31,8 +31,8 @@ double resident() {
 }
 
 // All keys that are bound, except those that write files.
-constexpr KeySym keys[] = {XK_1,    XK_2, XK_3, XK_4, XK_k, XK_space, XK_period,   XK_r,      XK_f,
-                           XK_Home, XK_b, XK_w, XK_l, XK_n, XK_Tab,   XK_question, XK_Escape, XK_space};
+constexpr KeySym keys[] = {XK_1, XK_2, XK_k, XK_space, XK_period, XK_r,        XK_f,      XK_Home,
+                           XK_b, XK_w, XK_l, XK_n,     XK_Tab,    XK_question, XK_Escape, XK_space};
 constexpr const char* scenes[] = {"box", "drape", "nodule", "flag", "catheter"};
 
 class Soak {

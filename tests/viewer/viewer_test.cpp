@@ -104,7 +104,7 @@ TEST_F(ViewerTest, OnAGpuItLooksTheSame) {
     viewer.advance(3);
     EXPECT_TRUE(viewer.experiment()->trouble().empty());
     viewer.move_pointer(middle());
-    viewer.press(Button::left);
+    viewer.press(Button::left, true);
     EXPECT_TRUE(viewer.is_holding()) << viewer.message().text;
     viewer.change({"simulation.backend=\"cpu\""});  // while it is held
     viewer.advance(3);
@@ -204,6 +204,7 @@ TEST_F(ViewerTest, WhatBlowsUpIsHeldAndReturnedFrom) {
     ASSERT_FALSE(viewer.experiment()->trouble().empty());
     EXPECT_TRUE(viewer.message().bad);
     viewer.advance(5);
+    viewer.look();
     viewer.draw();
     viewer.undo();
     viewer.return_to_good();
@@ -212,6 +213,7 @@ TEST_F(ViewerTest, WhatBlowsUpIsHeldAndReturnedFrom) {
 
 TEST_F(ViewerTest, NothingIsOpenAndAllIsAsked) {
     viewer.advance(3);
+    viewer.look();
     viewer.draw();
     viewer.move_pointer(vec2(10));
     viewer.press(Button::left);
@@ -225,6 +227,7 @@ TEST_F(ViewerTest, NothingIsOpenAndAllIsAsked) {
     viewer.resize(ivec2(0, 0));
     EXPECT_EQ(viewer.size(), size);
     viewer.resize(ivec2(7, 5));
+    viewer.look();
     viewer.draw();
 }
 
@@ -251,6 +254,7 @@ TEST_F(ViewerTest, ShowsWhatAProgramMade) {
             << viewer.message().text;
     }
     viewer.advance(5);
+    viewer.look();
     viewer.draw();
     EXPECT_GT(viewer.image().pixels.size(), 0u);
 }
@@ -270,7 +274,8 @@ class GuiTest : public ViewerTest {
         io.MouseDown[0] = down;
         ImGui_ImplOpenGL3_NewFrame();
         ImGui::NewFrame();
-        gui.draw(viewer);
+        gui.build(viewer);
+        gui.draw();
     }
     void click(vec2 at) { frame(at), frame(at, true), frame(at), frame(at); }
 };
@@ -289,15 +294,15 @@ TEST_F(GuiTest, ClicksReachTheControls) {
     const double before = viewer.experiment()->time();
     click(vec2(90, 40));  // a frame
     EXPECT_GT(viewer.experiment()->time(), before);
-    click(vec2(76, 94));
-    EXPECT_EQ(viewer.options.mode, Mode::press);
+    click(vec2(86, 94));
+    EXPECT_EQ(viewer.options.mode, Mode::pin);
 }
 
 TEST_F(GuiTest, KeysDoWhatTheHelpSays) {
     open("box");
     viewer.advance(2);
-    gui.key(viewer, '3', false, false);
-    EXPECT_EQ(viewer.options.mode, Mode::dent);
+    gui.key(viewer, '2', false, false);
+    EXPECT_EQ(viewer.options.mode, Mode::pin);
     gui.key(viewer, '1', false, false);
     gui.key(viewer, 'W', false, false);
     gui.key(viewer, 'L', false, false);
@@ -338,6 +343,7 @@ TEST_F(GuiTest, DrawsItselfOverThePicture) {
     auto show = [&](bool controls) {
         glBindFramebuffer(GL_FRAMEBUFFER, frame_buffer);
         glViewport(0, 0, 960, 720);
+        viewer.look();
         viewer.draw();
         glBindFramebuffer(GL_FRAMEBUFFER, frame_buffer);
         if (controls) frame(vec2(-1000));

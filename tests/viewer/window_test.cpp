@@ -68,7 +68,10 @@ class WindowTest : public testing::Test {
     void drag(vec2 from, vec2 to, unsigned button) {
         person->move(from);
         rounds(1);
+        if (button == 1) person->hold(XK_Shift_L, true);  // so that it grasps
         person->button(button, true);
+        rounds(1);
+        if (button == 1) person->hold(XK_Shift_L, false);
         for (int i = 1; i <= 8; ++i) {
             person->move(glm::mix(from, to, float(i) / 8));
             rounds(1);
@@ -130,7 +133,7 @@ TEST_F(WindowTest, KeysAreHeard) {
     rounds(1);
     person->key(XK_2);
     rounds(2);
-    EXPECT_EQ(viewer().options.mode, Mode::press);
+    EXPECT_EQ(viewer().options.mode, Mode::pin);
     person->key(XK_w);
     rounds(2);
     EXPECT_TRUE(viewer().options.look.wireframe);
