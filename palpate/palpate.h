@@ -70,6 +70,7 @@
 #include "palpate/scene/path.h"
 #include "palpate/scene/scene.h"
 #include "palpate/scene/surface.h"
+#include "palpate/solver/contact_force.h"
 #include "palpate/solver/forces.h"
 #include "palpate/solver/guides.h"
 #include "palpate/solver/longest_step.h"
