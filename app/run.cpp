@@ -103,7 +103,8 @@ void print_summary(const Report& report) {
 // Whether the run is to write files or to end by itself, which a window does not do.
 bool wants_files(const RunArguments& arguments) {
     const RunSettings& s = arguments.settings;
-    for (const auto* file : {&s.video, &s.images, &s.report, &s.plot, &s.nodes, &s.surface, &s.sequence})
+    for (const auto* file :
+         {&s.video, &s.images, &s.report, &s.plot, &s.contacts, &s.nodes, &s.surface, &s.sequence})
         if (!file->empty()) return true;
     return s.frames || s.steps || arguments.rest;
 }
@@ -216,6 +217,8 @@ void add_run(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--report", settings.report, "write figures as JSON");
     command->add_option("--plot", settings.plot, "write force and indentation over time as SVG");
+    command->add_option("--contacts", settings.contacts,
+                        "write force, place, depth and area of each tool's contacts, each ms, as CSV");
     command->add_option("--nodes", settings.nodes, "write the final nodes as CSV");
     command->add_option("--surface", settings.surface,
                         "write the final surface: .ply, .obj, .stl, .vtp, .glb or .gltf");

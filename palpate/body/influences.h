@@ -18,6 +18,12 @@ struct Press {
     float stiffness = 400;    // N/m
 };
 
+/// Where it is so many seconds later.
+inline Press after(Press press, float seconds) {
+    press.centre += seconds * press.velocity;
+    return press;
+}
+
 /// The pressure of a tip for each metre of depth, Pa/m.
 inline float pressure_per_metre(const Press& press) {
     return press.stiffness / (3.14159265f * press.radius * press.radius);

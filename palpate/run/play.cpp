@@ -31,9 +31,10 @@ Report::Body describe(const Model& model) {
     return body;
 }
 
-// s: bodies that hands press go on for so long before the hands feel them again.
-double slice_for(const Scene& scene) {
-    return has_tool(scene, ToolKind::touch) ? slice_seconds : frame_seconds;
+// s: bodies that hands press go on for so long before the hands feel them again; and where contacts are
+// followed.
+double slice_for(const Scene& scene, bool follows_contacts) {
+    return follows_contacts || has_tool(scene, ToolKind::touch) ? slice_seconds : frame_seconds;
 }
 
 // A surface in a cage may be open; every other one except cloth encloses a volume.
@@ -65,6 +66,7 @@ struct Play::Acting {
     std::vector<Motion> colliders;
     vec3 wind = vec3(0);
     decltype(Acts::press_in_slice) press_in_slice;
+    decltype(Acts::after_slice) after_slice;
 };
 
 Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double seconds) {
@@ -81,13 +83,14 @@ Motion motion_between(const Pose& from, const Pose& to, vec3 pivot, double secon
 }
 
 Play::Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context,
-           std::span<const double> frequencies)
+           std::span<const double> frequencies, bool follows_contacts)
     : scene_(scene),
       made_(made),
       report_(report),
-      world_(made.simulation, context, nullptr, slice_for(scene)),
+      world_(made.simulation, context, nullptr, slice_for(scene, follows_contacts)),
       skins_(made.models.size() + made.static_surfaces.size()),
-      tools_(scene.tools.size()) {
+      tools_(scene.tools.size()),
+      follows_contacts_(follows_contacts) {
     for (const Model& model : made.models) {
         const std::size_t m = world_.count();
         world_.add(model.body, m < frequencies.size() ? frequencies[m] : 0);
@@ -237,7 +240,9 @@ std::vector<Press> Play::press(double time, double seconds, bool moved, std::spa
 
 bool Play::advance(double time, double seconds, const Interaction& hands) {
     probe(time, seconds);
-    const Acting on = acting(time, seconds, hands);
+    Acting on = acting(time, seconds, hands);
+    on.after_slice = [&](const WorldSlice& slice) { measure(on, time, seconds, slice); };
+    contacts_.clear();
     const double mapping = report_.seconds.map;
     bool whole = false;
     {
@@ -290,8 +295,10 @@ bool Play::step(double seconds, const Acting& on) {
                                              .moves = on.moves,
                                              .colliders = on.colliders,
                                              .wind = on.wind,
-                                             .press_in_slice = on.press_in_slice});
+                                             .press_in_slice = on.press_in_slice,
+                                             .after_slice = on.after_slice});
     if (stats.diverged) {
+        contacts_.clear();
         const std::size_t m = *stats.diverged;
         report_.notes.push_back(fmt::format("body {} diverged with steps of {:.4g} s", report_.bodies[m].name,
                                             stats.bodies[m].step));
@@ -307,6 +314,26 @@ void Play::map() const {
         deform(made_.models[m].embedding, nodes(m), skins_[m].positions, skins_[m].normals, nullptr,
                &world_.team());
     mapped_ = Mapped::all;
+}
+
+// Tips come first, then the interaction, then hands that feel what they press, as press() has returned them.
+void Play::measure(const Acting& on, double time, double seconds, const WorldSlice& slice) {
+    const bool is_last = slice.at + slice.seconds > seconds - 1e-9;
+    if (!is_last && !follows_contacts_) return;
+    std::vector<std::optional<std::size_t>> tools(on.presses.size());
+    std::ranges::copy(on.tool_of_press, tools.begin());
+    for (std::size_t t = 0; t < handles_.size(); ++t)
+        if (auto* one = std::get_if<Probe>(&handles_[t]); one && one->presses()) {
+            tools.emplace_back();
+            if (one->is_there(time + slice.at)) tools.back() = t;
+        }
+    for (std::size_t p = 0; p < tools.size(); ++p)
+        for (std::size_t m = 0; tools[p] && m < world_.count(); ++m) {
+            const Press tip = after(slice.presses[p], float(slice.seconds));
+            contacts_.push_back({*tools[p], m, time + slice.at + slice.seconds,
+                                 dvec3(0) - slice.bodies[m].reactions[p] / slice.seconds, tip,
+                                 contact_force(world_.solver(m).body(), nodes(m).positions, tip)});
+        }
 }
 
 void Play::record(const Acting& on, double time, double seconds) {
@@ -353,6 +380,13 @@ void Play::record(const Acting& on, double time, double seconds) {
         tool.time.push_back(time);
         tool.force.push_back(force);
         tool.indentation.push_back(depth);
+    }
+    for (const ToolContact& contact : contacts_) {
+        Report::Tool& tool = report_.tools[contact.tool];
+        tool.largest_normal_force = std::max(tool.largest_normal_force, contact.normal());
+        tool.deepest_penetration = std::max(tool.deepest_penetration, contact.end.penetration);
+        tool.largest_area = std::max(tool.largest_area, contact.end.area());
+        tool.largest_pressure = std::max(tool.largest_pressure, contact.end.pressure());
     }
     count_inverted_cells(time);
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/run/contacts.h"
 #include "palpate/run/grip.h"
 #include "palpate/run/probe.h"
 #include "palpate/run/report.h"
@@ -31,8 +32,9 @@ struct InteractionForces {
 class Play {
  public:
     /// `context`: for a backend on the GPU. `frequencies`: of the bodies, if they are known; see make_solver.
+    /// `follows_contacts`: bodies go on in slices of a millisecond, and contacts() has each of them.
     Play(const Scene& scene, const Models& made, Report& report, const gl::Context* context = nullptr,
-         std::span<const double> frequencies = {});
+         std::span<const double> frequencies = {}, bool follows_contacts = false);
 
     /// Simulates `seconds` from `time` on; mapping is deferred until it is needed. False if a body diverged:
     /// then the state is unchanged.
@@ -40,6 +42,10 @@ class Play {
 
     /// The forces of the last frame's interaction.
     const InteractionForces& interaction_forces() const { return interaction_forces_; }
+
+    /// What the scene's tools that press did to each body during the last frame: in its last slice, or in
+    /// each.
+    std::span<const ToolContact> contacts() const { return contacts_; }
 
     /// Saves and restores the states of all bodies, exactly to the bit. Tools stay where they are on their
     /// paths.
@@ -98,6 +104,7 @@ class Play {
     void count_inverted_cells(double time);
     void probe(double time, double seconds);
     std::vector<Press> press(double time, double seconds, bool moved, std::span<const dvec3> reactions);
+    void measure(const Acting& on, double time, double seconds, const WorldSlice& slice);
     void record(const Acting& on, double time, double seconds);
 
     const Scene& scene_;
@@ -111,6 +118,8 @@ class Play {
     std::vector<std::variant<Tip, Grip, Probe>> handles_;  // one a tool
     std::vector<std::optional<Tool>> tools_;
     InteractionForces interaction_forces_;
+    const bool follows_contacts_;
+    std::vector<ToolContact> contacts_;
     double time_ = 0;      // s
     double counted_ = -1;  // s, when inverted cells were last counted
 };

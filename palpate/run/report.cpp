@@ -59,6 +59,10 @@ Json to_json(const Report::Tool& tool) {
     return {{"name", tool.name},
             {"largest_force_n", tool.largest_force},
             {"deepest_indentation_m", tool.deepest_indentation},
+            {"largest_normal_force_n", tool.largest_normal_force},
+            {"deepest_penetration_m", tool.deepest_penetration},
+            {"largest_area_m2", tool.largest_area},
+            {"largest_pressure_pa", tool.largest_pressure},
             {"time_s", tool.time},
             {"force_n", tool.force},
             {"indentation_m", tool.indentation}};

@@ -31,6 +31,11 @@ struct Report {
         double largest_force = 0;  // N
         double deepest_indentation =
             0;  // m, of a surface under the tip, relative to its place when the tip appeared
+        // Of one that presses bodies, on any of them (ToolContact):
+        double largest_normal_force = 0;  // N
+        double deepest_penetration = 0;   // m, of the tip into the surface as it is pressed in
+        double largest_area = 0;          // m²
+        double largest_pressure = 0;      // Pa
         std::vector<double> time;         // s, the end of each frame
         std::vector<double> force;        // N, mean over the frame
         std::vector<double> indentation;  // m, at the end of the frame

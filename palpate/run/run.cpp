@@ -7,6 +7,7 @@
 #include "palpate/files/sequence.h"
 #include "palpate/files/write.h"
 #include "palpate/gl/context.h"
+#include "palpate/run/contacts.h"
 #include "palpate/run/film.h"
 #include "palpate/run/notes.h"
 #include "palpate/run/picture_writer.h"
@@ -237,6 +238,10 @@ bool has_rest_beside(const std::filesystem::path& sequence) {
 }
 bool has_rest_inside(const std::filesystem::path& sequence) { return extension(sequence) == ".glb"; }
 
+bool presses_bodies(const Scene& scene) {
+    return !scene.bodies.empty() && (has_tool(scene, ToolKind::press) || has_tool(scene, ToolKind::touch));
+}
+
 // Throws if an output would replace an input.
 void check_inputs_stay(const Scene& scene, const RunSettings& settings) {
     const std::vector<std::filesystem::path> inputs = find_files(scene);
@@ -245,7 +250,8 @@ void check_inputs_stay(const Scene& scene, const RunSettings& settings) {
         for (const std::string& name : numbered_files(folder, begin, end))
             check_not_input(folder / name, inputs);
     };
-    for (const auto* file : {&settings.video, &settings.report, &settings.plot, &settings.nodes})
+    for (const auto* file :
+         {&settings.video, &settings.report, &settings.plot, &settings.contacts, &settings.nodes})
         check_not_input(*file, inputs);
     for (std::size_t s = 0; !settings.surface.empty() && s < scene.bodies.size() + scene.surfaces.size(); ++s)
         check_not_input(file_of(s, scene, settings.surface), inputs);
@@ -266,6 +272,10 @@ void check_outputs(const Scene& scene, const RunSettings& settings) {
     if (!settings.plot.empty() && scene.tools.empty())
         throw Error("no tool whose force could be plotted", settings.plot.string(),
                     "use a scene with a [[tool]], or write no plot");
+    if (!settings.contacts.empty() && !(presses_bodies(scene)))
+        throw Error(
+            "no tool that presses a body", settings.contacts.string(),
+            "use a scene with a [[body]] and a [[tool]] of kind press or touch, or write no contacts");
     for (const auto* file : {&settings.nodes, &settings.sequence})
         if (!file->empty() && scene.bodies.empty())
             throw Error("no body that moves, whose nodes could be written", file->string(),
@@ -278,6 +288,7 @@ void check_outputs(const Scene& scene, const RunSettings& settings) {
     if (!settings.video.empty()) check_film(settings.video, settings.width, settings.height);
     check_output(settings.report, ".json");
     check_output(settings.plot, ".svg");
+    check_output(settings.contacts, ".csv");
     check_output(settings.nodes, ".csv");
     check_output(settings.surface);
     check_output(settings.sequence);
@@ -310,7 +321,8 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     std::optional<gl::Context> context;  // for a backend on the GPU, and for drawing
     if (on_gpu(made.simulation.backend)) report.renderer = context.emplace().renderer();
     const gl::Context* const shared = context ? &*context : nullptr;
-    Play play(scene, made, report, shared);
+    Play play(scene, made, report, shared, {}, !settings.contacts.empty());
+    ContactTable contacts(scene);
     for (std::size_t m = 0; m < made.models.size(); ++m)
         for (std::size_t c = 0; c < made.simulation.colliders.size(); ++c)
             report.bodies[m].held_at_start += held_at_start(scene, made, c, m);
@@ -337,6 +349,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
             break;
         }
         if (!on_gpu(made.simulation.backend)) play.skins();  // so that its time counts, drawn or not
+        if (!settings.contacts.empty()) contacts.add(play.contacts());
         report.simulated += span;
         ++report.frames;
         if (watch.at_rest(report.simulated, span, play)) report.rest = report.simulated;
@@ -358,6 +371,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
         report.bodies[m].kinetic_energy = e.kinetic;
         report.bodies[m].elastic_energy = e.elastic;
     }
+    if (!settings.contacts.empty()) contacts.write(settings.contacts);
     if (!settings.nodes.empty()) write_nodes(made.models, states, settings.nodes);
     if (!settings.surface.empty()) write_surfaces(scene, play.skins(), settings.surface);
     if (!settings.plot.empty()) write_plot(report, settings.plot);

@@ -39,6 +39,7 @@ struct RunSettings {
         images;  // a folder of PNG pictures, NAME-01.50s.png; older ones are kept, with a note
     std::filesystem::path report;    // JSON
     std::filesystem::path plot;      // SVG: contact force and indentation over time
+    std::filesystem::path contacts;  // CSV: what each tool that presses does to each body, each millisecond
     std::filesystem::path nodes;     // CSV of the final state: body,id,x,y,z,vx,vy,vz
     std::filesystem::path surface;   // the final surface, see write_mesh; with several bodies NAME-BODY.ply
     std::filesystem::path sequence;  // the moving surface, see make_sequence; likewise

@@ -18,7 +18,7 @@ class OneSlice {
           moves_(bodies),
           bodies_(bodies) {
         const auto t = float(time);
-        for (Press& press : presses_) press.centre += t * press.velocity;
+        for (Press& press : presses_) press = after(press, t);
         presses_.insert(presses_.end(), more.begin(), more.end());
         for (const auto& [body, push] : acts.pushes) {
             pushes_[body].push_back(push);
@@ -31,6 +31,7 @@ class OneSlice {
     }
 
     const Influences& on(std::size_t body) const { return bodies_[body]; }
+    std::span<const Press> presses() const { return presses_; }
 
  private:
     std::vector<Press> presses_;
@@ -104,15 +105,19 @@ WorldStats World::step(double seconds, const Acts& acts) {
             return next;
         });
         slice_reactions_.assign(more.size(), dvec3(0));
+        std::vector<Stats> in_slice;
         for (std::size_t b = 0; b < count() && !stats.diverged; ++b) {
             Solver& solver = *solvers_[b];
             Stats now = s == 0 ? solver.step(length, slice.on(b)) : solver.go_on(length, slice.on(b));
             if (now.diverged) stats.diverged = b;
             for (std::size_t p = 0; p < more.size() && !now.diverged; ++p)
                 slice_reactions_[p] += now.reactions[acts.presses.size() + p];
+            if (acts.after_slice) in_slice.push_back(now);
             now.reactions.resize(acts.presses.size(), dvec3(0));
             ::palpate::add(stats.bodies[b], now);
         }
+        if (!stats.diverged && acts.after_slice)
+            or_undo(true, [&] { acts.after_slice({s * length, length, slice.presses(), in_slice}); });
         if (!stats.diverged) continue;
         // All that have gone on since the call began.
         for (std::size_t b = 0; b < count(); ++b)

@@ -20,6 +20,13 @@ struct BodyMove {
     Move move;
 };
 
+/// What a world has done in one slice of a call of World::step.
+struct WorldSlice {
+    double at = 0, seconds = 0;      // s: when it began, from the start of the call; its length
+    std::span<const Press> presses;  // as it began: Acts::presses, then what press_in_slice returned
+    std::span<const Stats> bodies;   // of this slice alone; their reactions are one for each of these
+};
+
 /// What acts in a world during one call of World::step, besides gravity.
 struct Acts {
     std::span<const Press> presses = {};  // all bodies feel them
@@ -32,6 +39,8 @@ struct Acts {
     /// of those that it returned for the slice before, in this call or the last; none after restore().
     std::function<std::vector<Press>(double at, double seconds, std::span<const dvec3> reactions)>
         press_in_slice = {};
+    /// Called after each slice in which no body diverged, if given.
+    std::function<void(const WorldSlice&)> after_slice = {};
 };
 
 /// What one call of World::step did.

@@ -106,6 +106,43 @@ TEST(World, AsksWhatPressesBeforeEachSlice) {
     EXPECT_LE(glm::distance(sum, all.reactions[0]), 1e-12);
 }
 
+// After each slice it is told what pressed, and what each body did: together that of the call.
+TEST(World, TellsWhatASliceDid) {
+    World world(on_cpu, nullptr, nullptr, 0.002);
+    for (int b = 0; b < 2; ++b) world.add(pinned_box());
+    const Press tip{.centre = vec3(0.025f, 0.045f, 0.015f), .velocity = vec3(0, -0.2f, 0), .stiffness = 50};
+    int slices = 0;
+    dvec3 of_first(0), of_later(0);
+    const Acts acts{
+        .presses = {&tip, 1},
+        .press_in_slice = [&](double, double, std::span<const dvec3>) { return std::vector{tip}; },
+        .after_slice =
+            [&](const WorldSlice& slice) {
+                EXPECT_LE(std::abs(slice.at - 0.002 * slices++), 1e-12);
+                ASSERT_EQ(slice.presses.size(), 2u);
+                EXPECT_LE(glm::distance(slice.presses[0].centre, after(tip, float(slice.at)).centre), 1e-7f);
+                EXPECT_EQ(slice.presses[1].centre, tip.centre);
+                ASSERT_EQ(slice.bodies.size(), 2u);
+                for (const Stats& body : slice.bodies) {
+                    of_first += body.reactions[0];
+                    of_later += body.reactions[1];
+                }
+            }};
+    const WorldStats stats = world.step(0.01, acts);
+    EXPECT_EQ(slices, 5);
+    EXPECT_GT(glm::length(of_later), 1e-4);
+    EXPECT_LE(glm::distance(of_first, stats.reactions[0]), 1e-12);
+    // What it throws takes the whole call back.
+    const std::vector<State> before = world.save();
+    EXPECT_EQ(refusal([&] {
+                  world.step(0.01, {.after_slice = [](const WorldSlice& slice) {
+                                 if (slice.at > 0.003) throw Error("no", "a test", "do not");
+                             }});
+              }),
+              "no in a test; do not");
+    for (std::size_t b : {0u, 1u}) expect_same_bits(world.save()[b], before[b]);
+}
+
 // What a later slice is asked to do, and cannot be done, or fails when it is asked for: then nothing has
 // moved.
 TEST(World, GoesBackIfALaterSliceIsRefused) {
