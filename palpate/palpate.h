@@ -32,6 +32,7 @@
 #include "palpate/body/nodes.h"
 #include "palpate/body/own_weight.h"
 #include "palpate/body/patch.h"
+#include "palpate/body/pressure_map.h"
 #include "palpate/body/scatter.h"
 #include "palpate/body/select.h"
 #include "palpate/body/simulation.h"

@@ -17,18 +17,19 @@
 namespace palpate {
 namespace {
 
-std::string ply(const Mesh& mesh, const std::string&) {
-    const bool normals = !mesh.normals.empty();
+std::string ply(const Mesh& mesh, const VertexValues& values, const std::string&) {
+    const bool normals = !mesh.normals.empty(), valued = !values.values.empty();
     std::string text = fmt::format(
         "ply\nformat binary_little_endian 1.0\ncomment in metres, written by Palpate\nelement vertex {}\n"
-        "property float x\nproperty float y\nproperty float z\n{}element face {}\n"
+        "property float x\nproperty float y\nproperty float z\n{}{}element face {}\n"
         "property list uchar uint vertex_indices\nend_header\n",
         mesh.positions.size(), normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
-        mesh.triangles.size());
-    text.reserve(text.size() + 24 * mesh.positions.size() + 13 * mesh.triangles.size());
+        valued ? fmt::format("property float {}\n", values.name) : "", mesh.triangles.size());
+    text.reserve(text.size() + 28 * mesh.positions.size() + 13 * mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         append(text, mesh.positions[i]);
         if (normals) append(text, mesh.normals[i]);
+        if (valued) append(text, values.values[i]);
     }
     for (uvec3 t : mesh.triangles) {
         append(text, std::uint8_t{3});
@@ -74,14 +75,15 @@ std::string stl(const Mesh& mesh, const std::string&) {
 }
 
 // Each block of numbers follows its length, and the XML has its offset.
-std::string vtp(const Mesh& mesh, const std::string& file) {
+std::string vtp(const Mesh& mesh, const VertexValues& values, const std::string& file) {
     if (mesh.triangles.size() > std::numeric_limits<std::int32_t>::max() / 3)
         throw Error("too many triangles for VTK's 32-bit numbers", file, "use .ply, or simplify it");
     std::string blocks;
-    auto array = [&]<class T>(const char* type, const char* name, int components, std::span<const T> values) {
+    auto array = [&]<class T>(const char* type, std::string_view name, int components,
+                              std::span<const T> numbers) {
         const std::size_t begins = blocks.size();
-        append(blocks, std::uint64_t(values.size_bytes()));
-        append_all(blocks, values);
+        append(blocks, std::uint64_t(numbers.size_bytes()));
+        append_all(blocks, numbers);
         return fmt::format(
             "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
             "format=\"appended\" offset=\"{}\"/>\n",
@@ -92,6 +94,7 @@ std::string vtp(const Mesh& mesh, const std::string& file) {
     const std::string points = array("Float32", "Points", 3, std::span<const vec3>(mesh.positions));
     const std::string normals =
         mesh.normals.empty() ? "" : array("Float32", "Normals", 3, std::span<const vec3>(mesh.normals));
+    const std::string valued = values.values.empty() ? "" : array("Float32", values.name, 1, values.values);
     const std::string corners = array("Int32", "connectivity", 1, std::span<const uvec3>(mesh.triangles)) +
                                 array("Int32", "offsets", 1, std::span<const std::int32_t>(ends));
     const std::string text = fmt::format(
@@ -99,18 +102,24 @@ std::string vtp(const Mesh& mesh, const std::string& file) {
         "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
         "<PolyData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
         "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n"
-        "<Points>\n{}</Points>\n<PointData Normals=\"Normals\">\n{}</PointData>\n<Polys>\n{}</Polys>\n"
+        "<Points>\n{}</Points>\n<PointData Normals=\"Normals\">\n{}{}</PointData>\n<Polys>\n{}</Polys>\n"
         "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_",
-        mesh.positions.size(), mesh.triangles.size(), points, normals, corners);
+        mesh.positions.size(), mesh.triangles.size(), points, normals, valued, corners);
     return text + blocks + "\n</AppendedData>\n</VTKFile>\n";
+}
+
+// Of a format without values of vertices.
+template <std::string (*text)(const Mesh&, const std::string&)>
+std::string without(const Mesh& mesh, const VertexValues&, const std::string& file) {
+    return text(mesh, file);
 }
 
 struct Format {
     std::string_view extension;
-    std::string (*text)(const Mesh& mesh, const std::string& file);
+    std::string (*text)(const Mesh& mesh, const VertexValues& values, const std::string& file);
 };
-constexpr Format formats[] = {{".ply", ply}, {".obj", obj}, {".stl", stl},
-                              {".vtp", vtp}, {".glb", glb}, {".gltf", gltf}};
+constexpr Format formats[] = {{".ply", ply}, {".obj", without<obj>}, {".stl", without<stl>},
+                              {".vtp", vtp}, {".glb", without<glb>}, {".gltf", without<gltf>}};
 
 const Format& format_of(const std::filesystem::path& path) {
     const std::string wanted = extension(path);
@@ -126,9 +135,12 @@ const Format& format_of(const std::filesystem::path& path) {
 
 void check_mesh_name(const std::filesystem::path& path) { format_of(path); }
 
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexValues& values) {
     check(mesh, path.string());
-    write_text(path, format_of(path).text(mesh, path.string()));
+    if (!values.values.empty() && values.values.size() != mesh.positions.size())
+        throw Error(fmt::format("{} values for {} vertices", values.values.size(), mesh.positions.size()),
+                    path.string(), "hand in one for each, or none");
+    write_text(path, format_of(path).text(mesh, values, path.string()));
 }
 
 }  // namespace palpate

@@ -2,8 +2,16 @@
 #include "palpate/mesh/mesh.h"
 
 #include <filesystem>
+#include <span>
+#include <string_view>
 
 namespace palpate {
+
+/// A number for each vertex of a surface, such as a pressure; or none.
+struct VertexValues {
+    std::string_view name;  // a word
+    std::span<const float> values;
+};
 
 /// Throws Error if write_mesh has no format for this file name.
 void check_mesh_name(const std::filesystem::path& path);
@@ -15,8 +23,11 @@ void check_mesh_name(const std::filesystem::path& path);
 /// - `.vtp`: VTK's XML PolyData, its numbers appended as raw bytes;
 /// - `.glb`, `.gltf`: glTF 2.0, in one file; normals are made unit.
 ///
-/// The file is written whole or not at all. Throws Error if it cannot be written, or if its format cannot
-/// hold the mesh: glTF needs at least one triangle, and at most 2 GB.
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
+/// Values of vertices are written to `.ply` and `.vtp`; the other formats have no place for them.
+///
+/// The file is written whole or not at all. Throws Error if it cannot be written, if there is not one value
+/// for each vertex, or if its format cannot hold the mesh: glTF needs at least one triangle, and at most 2
+/// GB.
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexValues& values = {});
 
 }  // namespace palpate

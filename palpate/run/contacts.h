@@ -15,9 +15,11 @@ struct ToolContact {
     dvec3 force = dvec3(0);          // N, on the body, the mean over the slice
     Press press;                     // the tool's tip at the end,
     ContactForce end;                // and what it does there
+    std::vector<double> taxels;      // Pa, of its pad, if it has one; only where each slice is followed
 
     double normal() const;    // N, the force along the normal; all of it where the tip has left the body
     double friction() const;  // N, the rest
+    dvec3 push() const { return normal() * end.normal; }  // N, the former as a vector
 };
 
 /// All contacts of a run as a table, CSV. docs/report.md describes it.
@@ -31,7 +33,10 @@ class ContactTable {
     void write(const std::filesystem::path& path) const;
 
  private:
+    void add_taxels(const ToolContact& contact);
+
     const Scene& scene_;
+    int rows_ = 0, columns_ = 0;  // of the largest pad
     std::string text_;
 };
 

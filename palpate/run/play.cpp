@@ -327,13 +327,43 @@ void Play::measure(const Acting& on, double time, double seconds, const WorldSli
             tools.emplace_back();
             if (one->is_there(time + slice.at)) tools.back() = t;
         }
+    const bool has_pads =
+        std::ranges::any_of(scene_.tools, [](const ToolRecipe& tool) { return tool.pad.has_value(); });
+    if (follows_contacts_ && has_pads) map_positions();
     for (std::size_t p = 0; p < tools.size(); ++p)
         for (std::size_t m = 0; tools[p] && m < world_.count(); ++m) {
             const Press tip = after(slice.presses[p], float(slice.seconds));
-            contacts_.push_back({*tools[p], m, time + slice.at + slice.seconds,
-                                 dvec3(0) - slice.bodies[m].reactions[p] / slice.seconds, tip,
-                                 contact_force(world_.solver(m).body(), nodes(m).positions, tip)});
+            contacts_.push_back({*tools[p],
+                                 m,
+                                 time + slice.at + slice.seconds,
+                                 dvec3(0) - slice.bodies[m].reactions[p] / slice.seconds,
+                                 tip,
+                                 contact_force(world_.solver(m).body(), nodes(m).positions, tip),
+                                 {}});
+            if (follows_contacts_) contacts_.back().taxels = on_pad(contacts_.back());
         }
+}
+
+// Of the surface as it has been mapped.
+std::vector<double> Play::on_pad(const ToolContact& contact) const {
+    std::optional<Pad> pad = scene_.tools[contact.tool].pad;
+    if (!pad) return {};
+    pad->centre += contact.press.centre;
+    const Skin& skin = skins_[contact.body];
+    return taxels(*pad, skin.positions,
+                  pressed_vertices(skin.positions, *skin.triangles, contact.press, contact.push()));
+}
+
+std::vector<float> Play::pressures(std::size_t body) const {
+    const Skin& skin = skins()[body];
+    std::vector<float> sum(skin.positions.size(), 0);
+    for (const ToolContact& contact : contacts_) {
+        if (contact.body != body || contact.time < time_ - 1e-9) continue;
+        for (const PressedVertex& one :
+             pressed_vertices(skin.positions, *skin.triangles, contact.press, contact.push()))
+            sum[one.vertex] += float(one.pressure);
+    }
+    return sum;
 }
 
 void Play::record(const Acting& on, double time, double seconds) {

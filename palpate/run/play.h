@@ -47,6 +47,9 @@ class Play {
     /// each.
     std::span<const ToolContact> contacts() const { return contacts_; }
 
+    /// The pressure of these tools on each vertex of a body's skin at the end of the frame, Pa.
+    std::vector<float> pressures(std::size_t body) const;
+
     /// Saves and restores the states of all bodies, exactly to the bit. Tools stay where they are on their
     /// paths.
     std::vector<State> save() const;
@@ -105,6 +108,7 @@ class Play {
     void probe(double time, double seconds);
     std::vector<Press> press(double time, double seconds, bool moved, std::span<const dvec3> reactions);
     void measure(const Acting& on, double time, double seconds, const WorldSlice& slice);
+    std::vector<double> on_pad(const ToolContact& contact) const;
     void record(const Acting& on, double time, double seconds);
 
     const Scene& scene_;

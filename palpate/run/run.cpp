@@ -51,9 +51,16 @@ std::filesystem::path file_of(std::size_t skin, const Scene& scene, std::filesys
     return path;
 }
 
-void write_surfaces(const Scene& scene, const std::vector<Skin>& skins, const std::filesystem::path& path) {
-    for (std::size_t s = 0; s < skins.size(); ++s)
-        write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles}, file_of(s, scene, path));
+// `with_pressure`: on each vertex of the bodies, Pa.
+void write_surfaces(const Scene& scene, const Play& play, bool with_pressure,
+                    const std::filesystem::path& path) {
+    const std::vector<Skin>& skins = play.skins();
+    for (std::size_t s = 0; s < skins.size(); ++s) {
+        std::vector<float> pressures;
+        if (with_pressure && s < scene.bodies.size()) pressures = play.pressures(s);
+        write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles}, file_of(s, scene, path),
+                   {"pressure", pressures});
+    }
 }
 
 // ---- outputs during the run ----
@@ -238,8 +245,10 @@ bool has_rest_beside(const std::filesystem::path& sequence) {
 }
 bool has_rest_inside(const std::filesystem::path& sequence) { return extension(sequence) == ".glb"; }
 
-bool presses_bodies(const Scene& scene) {
-    return !scene.bodies.empty() && (has_tool(scene, ToolKind::press) || has_tool(scene, ToolKind::touch));
+// Whether a tool presses a body, so that there are contacts.
+bool has_contacts(const Scene& scene) {
+    return !scene.bodies.empty() &&
+           std::ranges::any_of(scene.tools, [](const ToolRecipe& tool) { return presses_bodies(tool.kind); });
 }
 
 // Throws if an output would replace an input.
@@ -272,7 +281,7 @@ void check_outputs(const Scene& scene, const RunSettings& settings) {
     if (!settings.plot.empty() && scene.tools.empty())
         throw Error("no tool whose force could be plotted", settings.plot.string(),
                     "use a scene with a [[tool]], or write no plot");
-    if (!settings.contacts.empty() && !(presses_bodies(scene)))
+    if (!settings.contacts.empty() && !has_contacts(scene))
         throw Error(
             "no tool that presses a body", settings.contacts.string(),
             "use a scene with a [[body]] and a [[tool]] of kind press or touch, or write no contacts");
@@ -373,7 +382,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     }
     if (!settings.contacts.empty()) contacts.write(settings.contacts);
     if (!settings.nodes.empty()) write_nodes(made.models, states, settings.nodes);
-    if (!settings.surface.empty()) write_surfaces(scene, play.skins(), settings.surface);
+    if (!settings.surface.empty()) write_surfaces(scene, play, !settings.contacts.empty(), settings.surface);
     if (!settings.plot.empty()) write_plot(report, settings.plot);
     report.seconds.total = now() - start;
     if (!settings.report.empty()) write_report(report, settings.report);

@@ -248,6 +248,9 @@ void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const Sc
             fmt::format("a {} does not use a device", name_of(tool.kind)),
             fmt::format("leave out \"{}\", or make it a touch", tool.device));
     require("path", !tool.path.empty(), "no path", "give it a file or rows of [t, x, y, z]");
+    require("pad", !tool.pad || glm::length(glm::cross(tool.pad->width, tool.pad->height)) > 0,
+            "a pad whose sides are parallel or zero",
+            "give it width = [0.02, 0, 0] and height = [0, 0, 0.02], in m");
     require("along", (!tool.from && tool.shaft == 0) || glm::length(tool.along) > 0, "along is zero",
             "give it a direction");
     require("along", tool.from || tool.shaft > 0 || !require.has("along"), "along without from or shaft",

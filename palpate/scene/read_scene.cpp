@@ -279,6 +279,8 @@ void read_fields(Reader& read, MoveRecipe& move, Scene& scene) {
     read("about", move.about, position);
 }
 
+const NumberRange side_of_pad = any_number("m", "a fingertip is about 0.015 m wide").usual(1e-4, 1);
+
 void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     tool.lines = read.lines();
     read("name", tool.name);
@@ -290,6 +292,13 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     read("from", tool.from, position);
     read("along", tool.along);
     read("shaft", tool.shaft, zero_or_more("m").usual(0, 10));
+    read.table("pad", [&](Reader& inside) {
+        Pad& pad = tool.pad.emplace();
+        inside("width", pad.width, side_of_pad);
+        inside("height", pad.height, side_of_pad);
+        inside("columns", pad.columns, between(1, 100));
+        inside("rows", pad.rows, between(1, 100));
+    });
     read("body", tool.body);
     read("near", tool.near, position);
     read("relative", tool.relative);
@@ -304,6 +313,7 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
         refuse({"from", "along", "shaft"}, "remove it");
     else
         refuse({"body", "near", "relative"}, "remove it, or write kind = \"drag\"");
+    if (!presses_bodies(tool.kind)) refuse({"pad"}, "remove it, or write kind = \"press\" or \"touch\"");
     if (feels(tool.kind)) refuse({"stiffness"}, "say it of the surfaces: touch = { stiffness = 400 }");
 }
 

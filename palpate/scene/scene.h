@@ -3,6 +3,7 @@
 #include "palpate/body/embedding.h"
 #include "palpate/body/feel.h"
 #include "palpate/body/material.h"
+#include "palpate/body/pressure_map.h"
 #include "palpate/body/simulation.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/repair.h"
@@ -202,6 +203,8 @@ struct ToolRecipe {
     /// ... in this direction, first touches a surface; the path's positions are relative to that place.
     vec3 along = vec3(0, -1, 0);
     float shaft = 0;  // m: the length of a rod behind the tip, against `along`, that is only drawn
+    // ---- for a press or a touch ----
+    std::optional<Pad> pad;  // a tactile sensor, centred on the tip
     // ---- for a drag ----
     std::string body;          // the body whose node it pulls; empty: the nearest
     std::optional<vec3> near;  // it grasps the node nearest to this point; else to the path's first position

@@ -105,6 +105,36 @@ TEST(WriteMesh, VtpHasTheSameNumbers) {
     }
 }
 
+// Where the format has a place for it, a number for each vertex; elsewhere the same file as without.
+TEST(WriteMesh, WritesAValueForEachVertex) {
+    Scratch scratch;
+    const Mesh mesh = random_mesh(20, true);
+    std::vector<float> pressures;
+    for (int v = 0; v < 20; ++v) pressures.push_back(0.5f * float(v));
+    write_mesh(mesh, scratch / "a.ply", {"pressure", pressures});
+    const std::string ply = read_text(scratch / "a.ply");
+    const std::size_t begins = ply.find("end_header\n") + 11;
+    EXPECT_NE(ply.find("property float pressure\nelement face"), ply.npos);
+    for (std::size_t v = 0; v < 20; ++v) EXPECT_EQ(at<float>(ply, begins + 28 * v + 24), pressures[v]);
+    EXPECT_EQ(read_mesh(scratch / "a.ply", Units::metres).triangles, mesh.triangles);
+    write_mesh(mesh, scratch / "a.vtp", {"pressure", pressures});
+    const std::string vtp = read_text(scratch / "a.vtp");
+    EXPECT_NE(vtp.find("Name=\"pressure\" NumberOfComponents=\"1\""), vtp.npos);
+    EXPECT_NE(vtp.find(std::string(reinterpret_cast<const char*>(pressures.data()), 80)), vtp.npos);
+    for (const char* name : {"a.obj", "a.stl", "a.glb", "a.gltf"}) {
+        write_mesh(mesh, scratch / name);
+        const std::string without = read_text(scratch / name);
+        write_mesh(mesh, scratch / name, {"pressure", pressures});
+        EXPECT_EQ(read_text(scratch / name), without) << name;
+    }
+    pressures.pop_back();
+    EXPECT_HAS(refusal(scratch / "b.ply",
+                       [&] {
+                           write_mesh(mesh, scratch / "b.ply", {"pressure", pressures});
+                       }),
+               "19 values for 20 vertices");
+}
+
 TEST(WriteMesh, GlbKeepsTheFormatsRulesAndTheSameNumbers) {
     Scratch scratch;
     for (unsigned vertices : {3, 11, 258, 5001}) {

@@ -2,6 +2,8 @@
 #include "palpate/run/contacts.h"
 
 #include "palpate/base/files.h"
+#include "palpate/body/pressure_map.h"
+#include "palpate/files/read.h"
 #include "palpate/run/play.h"
 #include "palpate/run/run.h"
 #include "tests/refusal.h"
@@ -165,6 +167,73 @@ stiffness = 1
     EXPECT_EQ(all.report.tools[2].largest_normal_force, 0);
     // What the hand feels, it gives.
     EXPECT_LE(std::abs(given / all.report.tools[1].force.back() - 1), 0.1);
+}
+
+// The same block of finer cells, so that the tip presses more than a few of its vertices.
+Scene fine_scene(std::vector<Change> changes = {}) {
+    changes.insert(changes.end(), {"body.block.dims=[21, 11, 21]", "body.block.spacing=0.005"});
+    return scene(changes);
+}
+
+// A pad across the tip that covers the contact measures the force; one that stands on its edge next to
+// nothing.
+TEST(Contacts, AddUpOnAPad) {
+    const std::string side =
+        "tool.finger.pad={ width = [0.03, 0, 0], height = [0, 0, 0.03], columns = 3, rows = 2 }";
+    const Contacts all = contacts_of(fine_scene({side}));
+    for (const Row& row : all.rows) {
+        double sum = 0;
+        for (const auto& [name, value] : row.at)
+            if (name.starts_with("taxel_")) sum += value * 0.03 * 0.03 / 6;
+        EXPECT_LE(std::abs(sum - row.at.at("normal_n")), 1e-3 * all.report.tools[0].largest_normal_force)
+            << row.at.at("time_s");
+    }
+    const auto& last = all.rows.back().at;
+    EXPECT_GT(last.at("taxel_1_2_pa"), 3 * last.at("taxel_1_1_pa"));  // in the middle of the columns,
+    EXPECT_LE(std::abs(last.at("taxel_2_2_pa") / last.at("taxel_1_2_pa") - 1), 0.05);  // between the rows
+    EXPECT_FALSE(last.contains("taxel_3_1_pa"));
+    const Scene other =
+        fine_scene({side, "tool.finger.pad.width=[0.03, 0, 0]", "tool.finger.pad.height=[0, 0.03, 0]"});
+    for (const Row& row : contacts_of(other).rows)
+        EXPECT_LE(std::abs(row.at.at("taxel_1_2_pa")), 0.02 * row.at.at("pressure_pa"));  // edgeways
+}
+
+TEST(Contacts, ASurfaceHasItsPressures) {
+    Scratch scratch;
+    RunSettings settings;
+    settings.surface = scratch / "pressed.ply";
+    settings.contacts = scratch / "contacts.csv";
+    settings.frames = 60;
+    const Scene pressing = fine_scene();
+    const Report report = run(pressing, settings);
+    const std::string ply = read_text(settings.surface);
+    EXPECT_NE(ply.find("property float pressure\n"), std::string::npos);
+    EXPECT_EQ(read_mesh(settings.surface, Units::metres).positions.size(), report.bodies[0].vertices);
+    // The same from a play, whose pressures add up to the force.
+    const Models made = build(pressing);
+    Report again;
+    Play play(pressing, made, again);
+    for (int frame = 0; frame < 60; ++frame) ASSERT_TRUE(play.advance(frame * frame_seconds, frame_seconds));
+    ASSERT_EQ(play.contacts().size(), 1u);
+    const ToolContact& contact = play.contacts()[0];
+    const Skin& skin = play.skins()[0];
+    const std::vector<float> pressures = play.pressures(0);
+    dvec3 sum(0);
+    float most = 0;
+    for (const PressedVertex& one :
+         pressed_vertices(skin.positions, *skin.triangles, contact.press, contact.push())) {
+        sum += one.force;
+        most = std::max(most, float(one.pressure));
+        EXPECT_LE(std::abs(pressures[one.vertex] - one.pressure), 1e-3);
+    }
+    EXPECT_LE(std::abs(glm::dot(sum, contact.end.normal) - contact.normal()), 1e-9);
+    EXPECT_EQ(*std::ranges::max_element(pressures), most);
+    // Less than on the nodes, whose areas are those at rest: the surface is stretched over the tip.
+    EXPECT_LE(most, contact.end.pressure());
+    EXPECT_GE(most, 0.7 * contact.end.pressure());
+    settings.contacts.clear();
+    run(pressing, settings);
+    EXPECT_EQ(read_text(settings.surface).find("pressure"), std::string::npos);
 }
 
 TEST(Contacts, AreRefusedWhereThereAreNone) {

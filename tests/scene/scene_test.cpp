@@ -98,6 +98,11 @@ TEST(Scene, WrongTypesAndValuesAreNamed) {
     expect_words(refusal(small + "[[collider]]\nplane = {}\nsphere = {}\n"), {"two shapes"});
     expect_words(refusal(small + "smooth = 3\n"), {"dims", "smooth"});
     expect_words(refusal(small + "pin = { radius = 1 }\n"), {"pin.near"});
+    const std::string press = small + "[[tool]]\npath = [[0, 0, 0, 0]]\n";
+    expect_words(refusal(press + "pad = { width = [0.01, 0, 0] }\n"), {"a pad whose sides", "height ="});
+    expect_words(refusal(press + "pad = { rows = 0 }\n"), {"tool.1.pad.rows", "not from 1 to 100"});
+    expect_words(refusal(press + "kind = \"dent\"\npad = { rows = 1 }\n"),
+                 {"\"pad\" is not a key of a dent", "press"});
     expect_words(refusal(small + "[[tool]]\nname = \"a/b\"\npath = [[0, 0, 0, 0]]\n"), {"slash"});
     expect_words(refusal(small + "[[tool]]\npath = [[0, 0, 0, 1e300]]\n"), {"out of range"});
 }

@@ -3,6 +3,7 @@
 
 #include "palpate/body/cloth.h"
 #include "palpate/body/lattice.h"
+#include "palpate/body/pressure_map.h"
 #include "palpate/solver/solver.h"
 #include "tests/refusal.h"
 #include "tests/shapes.h"
@@ -79,6 +80,24 @@ TEST(ContactForce, OfABallInAPlaneIsAnIntegral) {
         EXPECT_LE(glm::distance(now.place, dvec3(0.024, 0.024, top)), 1e-6);
         EXPECT_LE(glm::distance(now.normal, dvec3(0, 0, -1)), 1e-5);
     }
+}
+
+// The outside of cells is a staircase, whose area is that of a slope times 1 to √3. That is known
+// (docs/touch.md): by how much nodes are pressed harder than the vertices of the surface would be.
+TEST(ContactForce, IsLargerOnSlopes) {
+    const Mesh ball = ellipsoid(vec3(0.03f), 60);
+    const Body body = lattice(ball, {.nodes = 20'000, .material = springs});
+    auto factor = [&](vec3 side) {
+        const Press press{.centre = 0.038f * glm::normalize(side), .radius = 0.012f};
+        const dvec3 force = contact_force(body, body.positions, press).force;
+        const auto pressed = pressed_vertices(ball.positions, ball.triangles, press, force);
+        const double depth =
+            0.012 - glm::distance(dvec3(ball.positions[pressed[0].vertex]), dvec3(press.centre));
+        return pressed[0].pressure / (depth * double(pressure_per_metre(press)));
+    };
+    EXPECT_NEAR(factor({1, 0, 0}), 1, 0.02);
+    EXPECT_NEAR(factor({1, 1, 0}), 1.38, 0.02);
+    EXPECT_NEAR(factor({1, 1, 1}), 1.70, 0.02);
 }
 
 TEST(ContactForce, IsNothingOutOfReach) {
