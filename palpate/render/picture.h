@@ -33,6 +33,9 @@ struct Surface {
     /// Its dents; most_dents of those that act are shown. The near and far planes are placed without them, so
     /// a bump far above everything may be cut off.
     std::span<const Dent> dents = {};
+    /// Where there are positions: texture coordinates now, one a vertex, in place of the mesh's own; or
+    /// empty.
+    std::span<const vec2> uvs = {};
 };
 
 /// A wireframe, such as the springs of a lattice. What a surface hides of it shines through faintly.

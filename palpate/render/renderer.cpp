@@ -69,7 +69,9 @@ struct DrawnMesh {
 struct Moving {
     gl::Buffer positions;
     gl::Buffer normals;
-    GpuNodes nodes = {};  // if it follows nodes: these buffers, or the picture's
+    gl::Buffer uvs;
+    bool has_uvs = false;  // of its own
+    GpuNodes nodes = {};   // if it follows nodes: these buffers, or the picture's
     GpuDents dents;
 };
 
@@ -130,12 +132,16 @@ gl::VertexArray corners_of_surfaces() {
     return corners;
 }
 
+void attach_uvs(const gl::Buffer& uvs, bool has_uvs, GLuint corners) {
+    glVertexArrayVertexBuffer(corners, uv_attribute, uvs.name(), 0, sizeof(vec2));
+    (has_uvs ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(corners, uv_attribute);
+}
+
 // Attaches the constant attributes of a model to the vertex array `corners`.
 void attach(const DrawnMesh& model, GLuint corners) {
     glVertexArrayVertexBuffer(corners, ambient_occlusion_attribute, model.ambient_occlusion.name(), 0,
                               sizeof(float));
-    glVertexArrayVertexBuffer(corners, uv_attribute, model.uvs.name(), 0, sizeof(vec2));
-    (model.has_uvs ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(corners, uv_attribute);
+    attach_uvs(model.uvs, model.has_uvs, corners);
 }
 
 gl::Sampler sampler_of_maps() {
@@ -294,6 +300,10 @@ void Renderer::Parts::check(const Picture& picture) const {
             require(map < int(maps.size()), "a map that was not added",
                     "use the numbers that Renderer::add gave, or -1 for none");
         const DrawnMesh& model = models[std::size_t(surface.mesh)];
+        require(surface.uvs.empty() ||
+                    (surface.uvs.size() == model.vertices && surface.positions.size() == model.vertices),
+                "texture coordinates of another number than the mesh's vertices, or without positions",
+                "give every vertex one of each");
         if (!surface.positions.empty() || !model.embedding) {
             require(surface.positions.size() == model.vertices && surface.normals.size() == model.vertices,
                     "a surface whose number of positions or normals differs from the number of its mesh's "
@@ -357,6 +367,8 @@ void Renderer::Parts::upload(const std::vector<Surface>& surfaces) {
 void Renderer::Parts::upload(const Surface& surface, Moving& to) const {
     const DrawnMesh& model = models[std::size_t(surface.mesh)];
     to.nodes = {};
+    to.has_uvs = !surface.uvs.empty();
+    if (to.has_uvs) to.uvs.upload(surface.uvs);
     if (to.dents.count() > 0 || !surface.dents.empty()) to.dents.set(surface.dents);
     if (surface.positions.size() == model.vertices) {
         to.positions.upload(surface.positions);
@@ -452,13 +464,14 @@ void Renderer::Parts::bind(const DrawnMesh& model, const Moving& shape) const {
     glVertexArrayVertexBuffer(corners, position_attribute, shape.positions.name(), 0, sizeof(vec3));
     glVertexArrayVertexBuffer(corners, normal_attribute, shape.normals.name(), 0, sizeof(vec3));
     attach(model, corners);
+    if (shape.has_uvs) attach_uvs(shape.uvs, true, corners);
     glBindVertexArray(corners);
 }
 
 void Renderer::Parts::set_look(const gl::Program& program, const Look& look, const DrawnMesh& model,
                                const Moving& shape) const {
     const bool has_tangents = shape.nodes.positions != 0 && model.embedding->has_tangents();
-    const bool coloured = look.colour_map >= 0 && model.has_uvs;
+    const bool coloured = look.colour_map >= 0 && (model.has_uvs || shape.has_uvs);
     const bool bumpy = look.normal_map >= 0 && model.has_uvs && has_tangents;
     program.set("albedo", look.colour);
     program.set("shine", look.shine);

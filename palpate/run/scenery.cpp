@@ -3,6 +3,9 @@
 #include "palpate/render/shapes.h"
 #include "palpate/run/run.h"
 
+#include <algorithm>
+#include <array>
+
 namespace palpate {
 namespace {
 
@@ -14,11 +17,37 @@ Collider shaft_of(const ToolRecipe& tool) {
     return {Capsule{vec3(0), -tool.shaft * glm::normalize(tool.along), tool.radius}};
 }
 
+// The colours of pressures: from pale, where there is none, over yellow and red to nearly black.
+Image scale_of_pressure() {
+    constexpr std::array<vec3, 5> stops = {vec3(230, 226, 220), vec3(252, 208, 74), vec3(237, 105, 37),
+                                           vec3(159, 42, 99), vec3(20, 11, 52)};
+    constexpr int parts = 64;
+    Image image{.width = parts * int(stops.size() - 1), .height = 1, .pixels = {}};
+    for (int x = 0; x < image.width; ++x) {
+        const auto from = std::size_t(x / parts);
+        const vec3 colour = glm::mix(stops[from], stops[from + 1], float(x % parts) / parts);
+        for (int k = 0; k < 3; ++k) image.pixels.push_back(std::uint8_t(colour[k] + 0.5f));
+        image.pixels.push_back(255);
+    }
+    return image;
+}
+
+// Where vertices of these pressures are in that image, which repeats beyond its middle pixels.
+std::vector<vec2> places_in_scale(const std::vector<float>& pressures, float most) {
+    std::vector<vec2> places;
+    for (float pressure : pressures) places.emplace_back(std::clamp(pressure / most, 0.01f, 0.99f), 0.5f);
+    return places;
+}
+
 Look look_of(const BodyRecipe& recipe, const Model& model, Renderer& renderer) {
     Look look{recipe.colour, recipe.shine};
     if (model.colour_map.width > 0) look.colour_map = renderer.add(model.colour_map, Texels::colours);
     if (model.normal_map.width > 0) look.normal_map = renderer.add(model.normal_map, Texels::normals);
     look.shows_normals = recipe.shade == Shade::normals;
+    if (recipe.shade == Shade::pressure) {
+        look.colour = vec3(1);
+        look.colour_map = renderer.add(scale_of_pressure(), Texels::colours);
+    }
     return look;
 }
 
@@ -53,7 +82,9 @@ Scenery::Shape Scenery::shape_of(const Collider& collider, Renderer& renderer) c
 }
 
 // If the GPU moves the nodes, it maps the surfaces, too; normal maps need tangents, which only the GPU maps.
+// The pressure is found on the host.
 bool Scenery::mapped_where_drawn(std::size_t body) const {
+    if (scene_->bodies[body].shade == Shade::pressure) return false;
     return on_gpu(made_->simulation.backend) || made_->models[body].normal_map.width > 0;
 }
 
@@ -99,26 +130,39 @@ std::vector<uvec2> lines_of(const Body& body) {
 void Scenery::add_bodies(const Play& play, bool springs, Picture& picture) {
     if (springs && springs_.empty())
         for (const Model& model : made_->models) springs_.push_back(lines_of(model.body));
+    pressed_.resize(made_->models.size());
     for (std::size_t m = 0; m < made_->models.size(); ++m) {
         Surface& surface = picture.surfaces.emplace_back();
         surface.mesh = meshes_[m];
         surface.look = looks_[m];
-        surface.gpu_nodes = play.gpu_nodes(m);
+        const bool by_pressure = scene_->bodies[m].shade == Shade::pressure;
+        if (!by_pressure) surface.gpu_nodes = play.gpu_nodes(m);
         if (surface.gpu_nodes.positions == 0 && mapped_where_drawn(m)) {
             surface.nodes = play.nodes(m);
         } else if (surface.gpu_nodes.positions == 0) {
             surface.positions = play.skins()[m].positions;
             surface.normals = play.skins()[m].normals;
         }
+        if (by_pressure) {
+            pressed_[m] = places_in_scale(play.pressures(m), scene_->bodies[m].pressure_scale);
+            surface.uvs = pressed_[m];
+        }
         if (springs) picture.wires.push_back({play.nodes(m).positions, springs_[m], {}});
     }
+}
+
+// What is pressed lies within the tip, which would hide how hard.
+bool Scenery::is_hidden(const ToolRecipe& tool) const {
+    return presses_bodies(tool.kind) && std::ranges::any_of(scene_->bodies, [](const BodyRecipe& body) {
+               return body.shade == Shade::pressure;
+           });
 }
 
 void Scenery::add_shafts(const Play& play, Picture& picture) {
     for (std::size_t t = 0; t < play.tools().size(); ++t) {
         const auto& tool = play.tools()[t];
         auto& [rest, now, mesh] = shafts_[t];
-        if (!tool || rest.triangles.empty()) continue;
+        if (!tool || rest.triangles.empty() || is_hidden(scene_->tools[t])) continue;
         for (std::size_t i = 0; i < rest.positions.size(); ++i)
             now.positions[i] = tool->centre + rest.positions[i];
         picture.surfaces.push_back(
@@ -131,7 +175,7 @@ void Scenery::add_tools(const Play& play, Picture& picture) {
     drag_lines_.clear();
     for (std::size_t t = 0; t < play.tools().size(); ++t) {
         const auto& tool = play.tools()[t];
-        if (!tool) continue;
+        if (!tool || is_hidden(scene_->tools[t])) continue;
         picture.balls.push_back({tool->centre, scene_->tools[t].radius, scene_->tools[t].colour});
         if (!tool->held) continue;
         drag_lines_.push_back(uvec2(drag_points_.size(), drag_points_.size() + 1));

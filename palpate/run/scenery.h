@@ -32,6 +32,7 @@ class Scenery {
         int mesh = 0;
     };
     Shape shape_of(const Collider& collider, Renderer& renderer) const;
+    bool is_hidden(const ToolRecipe& tool) const;
     bool mapped_where_drawn(std::size_t body) const;
     void add_bodies(const Play& play, bool springs, Picture& picture);
     void add_shafts(const Play& play, Picture& picture);
@@ -45,6 +46,7 @@ class Scenery {
     std::vector<Look> looks_;
     std::vector<std::vector<uvec2>> springs_;  // of the bodies, made on first use
     std::vector<Shape> shapes_;                // one for each collider
+    std::vector<std::vector<vec2>> pressed_;   // of the bodies whose pressure is shown, one a vertex
     std::vector<vec3> drag_points_;            // the two ends of each drag's spring
     std::vector<uvec2> drag_lines_;            // between those points
     std::vector<Shape> shafts_;                // one for each tool

@@ -172,6 +172,7 @@ BodyRecipe without_looks(BodyRecipe recipe) {
     recipe.colour = plain.colour;
     recipe.shine = plain.shine;
     recipe.shade = plain.shade;
+    recipe.pressure_scale = plain.pressure_scale;
     recipe.feel = plain.feel;
     return recipe;
 }

@@ -126,6 +126,8 @@ void check_grid(const BodyRecipe& body, const Require& require) {
 // Textures. A map needs texture coordinates, which only files and cloth have.
 void check_maps(const BodyRecipe& body, const Require& require) {
     require("weave", body.normal_map.empty() || !body.weave, "both normal_map and weave", "remove one");
+    require("shade", !body.is_textured() || body.shade != Shade::pressure, "the pressure over a texture",
+            "leave out shade, or colour_map, normal_map and weave");
     if (!body.is_textured()) return;
     const std::string map = require.has("colour_map")   ? "colour_map"
                             : require.has("normal_map") ? "normal_map"
@@ -155,6 +157,8 @@ void check_still(const BodyRecipe& surface, const SceneSource& source) {
     const Require require("surface " + surface.name, surface.lines, source);
     require.one_of({"volume", "surface"}, "name a file");
     check_surface(surface, require);
+    require("shade", surface.shade != Shade::pressure, "the pressure on what nothing simulates",
+            "make it a [[body]], or leave out shade");
 }
 
 void check(const BodyRecipe& body, const SceneSource& source) {

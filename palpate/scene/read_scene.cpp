@@ -125,6 +125,8 @@ void read_surface(Reader& read, BodyRecipe& body) {
     read.colour("colour", body.colour);
     read("shine", body.shine, between(0, 1, "", "0 is dull, 1 is wet"));
     read("shade", body.shade);
+    read("pressure_scale", body.pressure_scale,
+         above_zero("Pa", "a finger presses with about 1e4 Pa").usual(1, 1e7));
     read.table("touch", [&](Reader& inside) { read_fields(inside, body.feel); });
 }
 

@@ -71,10 +71,12 @@ struct Region {
 enum class Shade {
     colour,   // its colour, lit
     normals,  // its present normals: x, y and z as red, green and blue (2005, figure 6)
+    pressure  // how hard tools press it: from pale to dark
 };
 
 inline std::span<const Named<Shade>> names(Shade) {
-    static constexpr Named<Shade> all[] = {{Shade::colour, "colour"}, {Shade::normals, "normals"}};
+    static constexpr Named<Shade> all[] = {
+        {Shade::colour, "colour"}, {Shade::normals, "normals"}, {Shade::pressure, "pressure"}};
     return all;
 }
 
@@ -121,7 +123,8 @@ struct BodyRecipe {
     std::optional<ivec2> weave;               // that of a woven cloth with this many threads across u and v
                                               // (mesh/relief.h)
     Shade shade = Shade::colour;
-    Feel feel;  // for tools of the kind dent
+    float pressure_scale = 10'000;  // Pa, of the darkest colour, where the pressure is shown
+    Feel feel;                      // for tools of the kind dent
     Lines lines;
 
     bool has_normal_map() const { return !normal_map.empty() || weave; }

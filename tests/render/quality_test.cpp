@@ -362,6 +362,8 @@ TEST_F(Qualities, APictureOfWhatIsNotThereIsRefused) {
     refused("number of its mesh's vertices", [](Picture& p) { p.surfaces[0].positions = {}; });
     refused("number of its mesh's vertices",
             [](Picture& p) { p.surfaces[0].normals = p.surfaces[0].normals.first(7); });
+    const std::vector<vec2> too_few(7, vec2(0));
+    refused("texture coordinates", [&](Picture& p) { p.surfaces[0].uvs = too_few; });
     refused("a missing point", [](Picture& p) { p.wires[0].points = p.wires[0].points.first(1); });
 
     const Body body = lattice(thing_, {.spacing = 0.03f, .material = {.youngs_modulus = 1e4f, .density = 1}});

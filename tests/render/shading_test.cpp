@@ -186,6 +186,36 @@ TEST_F(Shading, AColourMapLiesAsItsCoordinatesSay) {
     }
 }
 
+// Coordinates of the moment take the place of the mesh's own, which may have none.
+TEST_F(Shading, AColourMapFollowsCoordinatesOfTheMoment) {
+    Image left_red{64, 64, {}};
+    for (int i = 0; i < 64 * 64; ++i)
+        if (i % 64 < 32)
+            left_red.pixels.insert(left_red.pixels.end(), {255, 0, 0, 255});
+        else
+            left_red.pixels.insert(left_red.pixels.end(), {0, 255, 0, 255});
+    FlatQuilt plane;
+    const Look look{.colour = vec3(1), .shine = 0, .colour_map = renderer_->add(left_red)};
+    for (bool has_own : {true, false}) {
+        if (!has_own) plane.mesh.uvs.clear();
+        const int mesh = renderer_->add(plane.mesh);
+        for (bool left : {true, false}) {
+            const std::vector<vec2> now(plane.mesh.positions.size(), vec2(left ? 0.25f : 0.75f, 0.5f));
+            Picture picture = from({0, 0, 0.6f}, {0, 0, -1});
+            picture.surfaces = {{.mesh = mesh,
+                                 .positions = plane.mesh.positions,
+                                 .normals = plane.mesh.normals,
+                                 .look = look,
+                                 .uvs = now}};
+            const Image image = this->image(picture);
+            const std::uint8_t* middle =
+                &image.pixels[4 * std::size_t(image.height / 2 * image.width + image.width / 2)];
+            EXPECT_EQ(middle[0] > 3 * middle[1], left) << has_own;
+            EXPECT_EQ(middle[1] > 3 * middle[0], !left) << has_own;
+        }
+    }
+}
+
 // Each face of a body shows where it looks now, and not where it looked at rest.
 TEST_F(Shading, NormalsAsColourAreThoseOfTheMoment) {
     const FlatQuilt plane;

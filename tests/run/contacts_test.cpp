@@ -3,6 +3,7 @@
 
 #include "palpate/base/files.h"
 #include "palpate/body/pressure_map.h"
+#include "palpate/files/image_file.h"
 #include "palpate/files/read.h"
 #include "palpate/run/play.h"
 #include "palpate/run/run.h"
@@ -234,6 +235,33 @@ TEST(Contacts, ASurfaceHasItsPressures) {
     settings.contacts.clear();
     run(pressing, settings);
     EXPECT_EQ(read_text(settings.surface).find("pressure"), std::string::npos);
+}
+
+// Where the tip presses, and nowhere before it has come; the tip itself is not in the way.
+TEST(Contacts, AreShownAsColours) {
+    Scratch scratch;
+    auto yellow = [&](int frames) {  // pixels of the scale's lighter half
+        RunSettings settings;
+        settings.frames = frames;
+        settings.image_every = 1;
+        settings.width = 160;
+        settings.height = 120;
+        settings.images = scratch / std::to_string(frames);
+        run(fine_scene({"body.block.shade=\"pressure\"", "camera.eye=[0.05, 0.4, 0.06]"}), settings);
+        const Image image =
+            read_image(settings.images / (frames < 60 ? "block-00.00s.png" : "block-01.00s.png"));
+        int count = 0;
+        for (std::size_t i = 0; i < image.pixels.size(); i += 4)
+            count += image.pixels[i] > image.pixels[i + 2] + 60;
+        return count;
+    };
+    try {
+        EXPECT_EQ(yellow(1), 0);
+        EXPECT_GT(yellow(61), 20);
+    } catch (const Error& error) {
+        if (std::string(error.what()).find("OpenGL") == std::string::npos) throw;
+        GTEST_SKIP() << "not available: " << error.what();
+    }
 }
 
 TEST(Contacts, AreRefusedWhereThereAreNone) {

@@ -100,6 +100,8 @@ TEST(Scene, WrongTypesAndValuesAreNamed) {
     expect_words(refusal(small + "pin = { radius = 1 }\n"), {"pin.near"});
     const std::string press = small + "[[tool]]\npath = [[0, 0, 0, 0]]\n";
     expect_words(refusal(press + "pad = { width = [0.01, 0, 0] }\n"), {"a pad whose sides", "height ="});
+    expect_words(refusal("[[surface]]\nsurface = \"a.ply\"\nshade = \"pressure\"\n"),
+                 {"nothing simulates", "[[body]]"});
     expect_words(refusal(press + "pad = { rows = 0 }\n"), {"tool.1.pad.rows", "not from 1 to 100"});
     expect_words(refusal(press + "kind = \"dent\"\npad = { rows = 1 }\n"),
                  {"\"pad\" is not a key of a dent", "press"});
