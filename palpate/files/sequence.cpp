@@ -39,13 +39,14 @@ class Numbered : public Sequence {
     Numbered(const Mesh& mesh, const std::filesystem::path& path, std::size_t pictures)
         : mesh_(mesh), path_(path), digits_(std::max<std::size_t>(4, std::to_string(pictures).size())) {}
 
-    void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) override {
+    void add(double time, std::span<const vec3> positions, std::span<const vec3> normals,
+             const VertexValues& values) override {
         mesh_.positions.assign(positions.begin(), positions.end());
         mesh_.normals.assign(normals.begin(), normals.end());
         const std::filesystem::path file =
             path_.parent_path() /
             fmt::format("{}-{:0{}}{}", path_.stem().string(), ++count_, digits_, path_.extension().string());
-        write_mesh(mesh_, file);
+        write_mesh(mesh_, file, values);
         list_ += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"{}\"/>\n", time,
                              for_xml(file.filename().string()));
     }
@@ -118,7 +119,8 @@ class Cache : public Sequence {
  public:
     Cache(const Mesh& mesh, const std::filesystem::path& path) : mesh_(mesh), path_(path), file_(path) {}
 
-    void add(double time, std::span<const vec3> positions, std::span<const vec3>) override {
+    void add(double time, std::span<const vec3> positions, std::span<const vec3>,
+             const VertexValues&) override {
         times_.push_back(float(time));
         if (is_mdd()) {
             std::vector<std::uint32_t> words;
@@ -175,7 +177,8 @@ class Morphs : public Sequence {
         file_.write(gltf_binary(rest_));
     }
 
-    void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) override {
+    void add(double time, std::span<const vec3> positions, std::span<const vec3> normals,
+             const VertexValues&) override {
         check_room_for(contents_.times.size() + 1);
         contents_.times.push_back(float(time));
         std::vector<vec3> ways(positions.begin(), positions.end());
@@ -223,7 +226,8 @@ class Checked : public Sequence {
           path_(path),
           sequence_(std::move(sequence)) {}
 
-    void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) override {
+    void add(double time, std::span<const vec3> positions, std::span<const vec3> normals,
+             const VertexValues& values) override {
         const bool lacks_normals = normals.empty() ? wants_normals_ : normals.size() != vertices_;
         if (positions.size() != vertices_ || lacks_normals)
             throw Error("a picture whose number of vertices differs from that of the sequence",
@@ -233,7 +237,7 @@ class Checked : public Sequence {
             throw Error(fmt::format("a picture at {} s after one at {} s", time, last_), path_.string(),
                         "add them in order");
         last_ = time;
-        sequence_->add(time, positions, normals);
+        sequence_->add(time, positions, normals, values);
     }
     void finish() override { sequence_->finish(); }
 

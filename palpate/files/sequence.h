@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/mesh/mesh.h"
+#include "palpate/files/write.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -19,7 +19,9 @@ class Sequence {
     /// their normals if the mesh has any; a cache of positions (.pc2, .mdd) needs none. Throws Error if their
     /// number is wrong, if the time is not later, if the disk is full, or if there are more than `pictures`
     /// where that matters.
-    virtual void add(double time, std::span<const vec3> positions, std::span<const vec3> normals) = 0;
+    /// `values`: written where write_mesh() writes them, to numbered .ply and .vtp.
+    virtual void add(double time, std::span<const vec3> positions, std::span<const vec3> normals,
+                     const VertexValues& values = {}) = 0;
 
     /// Must be called after the last picture, of which there must be at least one. Throws Error.
     virtual void finish() = 0;

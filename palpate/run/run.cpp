@@ -51,15 +51,18 @@ std::filesystem::path file_of(std::size_t skin, const Scene& scene, std::filesys
     return path;
 }
 
-// `with_pressure`: on each vertex of the bodies, Pa.
-void write_surfaces(const Scene& scene, const Play& play, bool with_pressure,
-                    const std::filesystem::path& path) {
+// The pressure on each vertex of a body, Pa, if contacts are written.
+std::vector<float> pressures_of(std::size_t body, const Play& play, const RunSettings& settings) {
+    return settings.contacts.empty() ? std::vector<float>() : play.pressures(body);
+}
+
+void write_surfaces(const Scene& scene, const Play& play, const RunSettings& settings) {
     const std::vector<Skin>& skins = play.skins();
     for (std::size_t s = 0; s < skins.size(); ++s) {
         std::vector<float> pressures;
-        if (with_pressure && s < scene.bodies.size()) pressures = play.pressures(s);
-        write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles}, file_of(s, scene, path),
-                   {"pressure", pressures});
+        if (s < scene.bodies.size()) pressures = pressures_of(s, play, settings);
+        write_mesh({skins[s].positions, skins[s].normals, *skins[s].triangles},
+                   file_of(s, scene, settings.surface), {"pressure", pressures});
     }
 }
 
@@ -102,7 +105,8 @@ void look_for_older(const std::filesystem::path& folder, const std::string& begi
 class MeshSequences {
  public:
     MeshSequences(const RunSettings& settings, const Scene& scene, const Models& made, const Play& play,
-                  double duration) {
+                  double duration)
+        : settings_(settings) {
         if (settings.sequence.empty()) return;
         const double frames_apart = std::round(std::clamp(settings.sequence_every / frame_seconds, 1.0, 1e9));
         apart_ = frames_apart * frame_seconds;
@@ -120,8 +124,11 @@ class MeshSequences {
         if (time < next_ - 1e-9) return;
         next_ += apart_;
         ++pictures_;
-        for (std::size_t m = 0; m < sequences_.size(); ++m)
-            sequences_[m]->add(time, play.skins()[m].positions, play.skins()[m].normals);
+        for (std::size_t m = 0; m < sequences_.size(); ++m) {
+            const std::vector<float> pressures = pressures_of(m, play, settings_);
+            sequences_[m]->add(time, play.skins()[m].positions, play.skins()[m].normals,
+                               {"pressure", pressures});
+        }
     }
 
     void finish(std::vector<std::string>& notes) {
@@ -138,6 +145,7 @@ class MeshSequences {
     }
 
  private:
+    const RunSettings& settings_;
     double apart_ = 0, next_ = 0;  // s
     std::size_t pictures_ = 0;
     std::vector<std::filesystem::path> paths_;
@@ -382,7 +390,7 @@ Report run(const Scene& scene, const RunSettings& settings, const Progress& prog
     }
     if (!settings.contacts.empty()) contacts.write(settings.contacts);
     if (!settings.nodes.empty()) write_nodes(made.models, states, settings.nodes);
-    if (!settings.surface.empty()) write_surfaces(scene, play, !settings.contacts.empty(), settings.surface);
+    if (!settings.surface.empty()) write_surfaces(scene, play, settings);
     if (!settings.plot.empty()) write_plot(report, settings.plot);
     report.seconds.total = now() - start;
     if (!settings.report.empty()) write_report(report, settings.report);

@@ -42,7 +42,7 @@ struct RunSettings {
     std::filesystem::path contacts;  // CSV: what each tool that presses does to each body, each millisecond
     std::filesystem::path nodes;     // CSV of the final state: body,id,x,y,z,vx,vy,vz
     std::filesystem::path surface;   // the final surface, see write_mesh; with several bodies NAME-BODY.ply.
-                                     // Where contacts are written, with the pressure on each vertex, Pa
+                                     // If contacts are written, with the pressure on each vertex, Pa
     std::filesystem::path sequence;  // the moving surface, see make_sequence; likewise
 
     double image_every = 1;            // s

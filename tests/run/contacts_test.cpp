@@ -206,7 +206,9 @@ TEST(Contacts, ASurfaceHasItsPressures) {
     settings.contacts = scratch / "contacts.csv";
     settings.frames = 60;
     const Scene pressing = fine_scene();
+    settings.sequence = scratch / "s.ply";
     const Report report = run(pressing, settings);
+    EXPECT_EQ(read_text(scratch / "s-0031.ply"), read_text(settings.surface));
     const std::string ply = read_text(settings.surface);
     EXPECT_NE(ply.find("property float pressure\n"), std::string::npos);
     EXPECT_EQ(read_mesh(settings.surface, Units::metres).positions.size(), report.bodies[0].vertices);
