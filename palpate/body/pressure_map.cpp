@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+// A third of the triangles around each.
 void find_areas(std::span<PressedVertex> vertices, std::span<const vec3> positions,
                 std::span<const uvec3> triangles) {
     std::vector<PressedVertex*> at(positions.size(), nullptr);
