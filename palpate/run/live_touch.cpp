@@ -14,7 +14,7 @@ constexpr float in_reach = 0.02f;      // m, beyond the tip: more than a hand mo
 constexpr float fastest_in_reach = 1;  // m/s, and in longer ones
 
 // What acts `age` seconds later.
-Interaction after(Interaction hands, double age) {
+Interaction as_of(Interaction hands, double age) {
     const auto moved_for = float(std::min(age, frame_seconds));
     const bool moves = age < frame_seconds;
     auto move = [&](vec3& place, vec3& velocity) {
@@ -103,7 +103,7 @@ int LiveTouch::slices_due(double time) {
 bool LiveTouch::advance(int slices) {
     const double start = now(), seconds = slices * slice_seconds;
     const std::size_t bodies = experiment_.models().models.size();
-    Interaction hands = after(besides_, besides_age_);
+    Interaction hands = as_of(besides_, besides_age_);
     const std::size_t first = hands.presses.size();
     for (std::size_t h = 0; h < hands_.size(); ++h) {
         const float reach = hands_[h]->radius() + in_reach + fastest_in_reach * float(seconds);

@@ -218,12 +218,11 @@ void Play::probe(double time, double seconds) {
 
 // What hands do to the bodies that they feel. One that is not there presses nothing, so that reactions keep
 // their places.
-std::vector<Press> Play::press(double time, double seconds, bool moved, std::span<const dvec3> reactions) {
+std::vector<Press> Play::press(double time, double seconds, std::span<const dvec3> reactions) {
     std::vector<Probe*> probes;
     for (auto& handle : handles_)
         if (auto* one = std::get_if<Probe>(&handle); one && one->presses()) probes.push_back(one);
     auto is_there = [time](const Probe* one) { return one->is_there(time); };
-    if (moved) mapped_ = Mapped::no;
     if (std::ranges::any_of(probes, [&](const Probe* one) { return is_there(one) && !one->has_begun(); }))
         skins();
     else if (std::ranges::any_of(probes, is_there))
@@ -241,7 +240,10 @@ std::vector<Press> Play::press(double time, double seconds, bool moved, std::spa
 bool Play::advance(double time, double seconds, const Interaction& hands) {
     probe(time, seconds);
     Acting on = acting(time, seconds, hands);
-    on.after_slice = [&](const WorldSlice& slice) { measure(on, time, seconds, slice); };
+    on.after_slice = [&](const WorldSlice& slice) {
+        mapped_ = Mapped::no;
+        measure(on, time, seconds, slice);
+    };
     contacts_.clear();
     const double mapping = report_.seconds.map;
     bool whole = false;
@@ -250,8 +252,10 @@ bool Play::advance(double time, double seconds, const Interaction& hands) {
         whole = step(seconds, on);
     }
     report_.seconds.simulate -= report_.seconds.map - mapping;  // which has its own time
-    if (!whole) return false;
-    mapped_ = Mapped::no;
+    if (!whole) {
+        mapped_ = Mapped::no;  // hands may have felt slices that were undone
+        return false;
+    }
     time_ = time + seconds;
     record(on, time + seconds, seconds);
     return true;
@@ -284,7 +288,7 @@ Play::Acting Play::acting(double time, double seconds, const Interaction& hands)
     if (!scene_.wind.empty()) on.wind = position(scene_.wind, time + seconds / 2);
     if (has_tool(scene_, ToolKind::touch))
         on.press_in_slice = [=, this](double at, double slice, std::span<const dvec3> reactions) {
-            return press(time + at, slice, at > 0, reactions);
+            return press(time + at, slice, reactions);
         };
     return on;
 }
@@ -317,9 +321,10 @@ void Play::map() const {
 }
 
 // Tips come first, then the interaction, then hands that feel what they press, as press() has returned them.
+// From a GPU nodes are not fetched for the report alone.
 void Play::measure(const Acting& on, double time, double seconds, const WorldSlice& slice) {
     const bool is_last = slice.at + slice.seconds > seconds - 1e-9;
-    if (!is_last && !follows_contacts_) return;
+    if (!follows_contacts_ && (!is_last || on_gpu(made_.simulation.backend))) return;
     std::vector<std::optional<std::size_t>> tools(on.presses.size());
     std::ranges::copy(on.tool_of_press, tools.begin());
     for (std::size_t t = 0; t < handles_.size(); ++t)
@@ -327,9 +332,6 @@ void Play::measure(const Acting& on, double time, double seconds, const WorldSli
             tools.emplace_back();
             if (one->is_there(time + slice.at)) tools.back() = t;
         }
-    const bool has_pads =
-        std::ranges::any_of(scene_.tools, [](const ToolRecipe& tool) { return tool.pad.has_value(); });
-    if (follows_contacts_ && has_pads) map_positions();
     for (std::size_t p = 0; p < tools.size(); ++p)
         for (std::size_t m = 0; tools[p] && m < world_.count(); ++m) {
             const Press tip = after(slice.presses[p], float(slice.seconds));
@@ -349,7 +351,7 @@ std::vector<double> Play::on_pad(const ToolContact& contact) const {
     std::optional<Pad> pad = scene_.tools[contact.tool].pad;
     if (!pad) return {};
     pad->centre += contact.press.centre;
-    const Skin& skin = skins_[contact.body];
+    const Skin& skin = touchable()[contact.body];
     return taxels(*pad, skin.positions,
                   pressed_vertices(skin.positions, *skin.triangles, contact.press, contact.push()));
 }

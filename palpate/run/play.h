@@ -106,7 +106,7 @@ class Play {
     void map() const;
     void count_inverted_cells(double time);
     void probe(double time, double seconds);
-    std::vector<Press> press(double time, double seconds, bool moved, std::span<const dvec3> reactions);
+    std::vector<Press> press(double time, double seconds, std::span<const dvec3> reactions);
     void measure(const Acting& on, double time, double seconds, const WorldSlice& slice);
     std::vector<double> on_pad(const ToolContact& contact) const;
     void record(const Acting& on, double time, double seconds);
