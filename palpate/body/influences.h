@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/base/vectors.h"
 #include "palpate/body/collider.h"
+#include "palpate/body/feel.h"
 
 #include <cstddef>
 #include <span>
@@ -10,12 +11,17 @@ namespace palpate {
 /// A spherical tip that presses on a body during one call of Solver::step, by penalty forces. Where it
 /// reaches below the surface, it pushes radially with a pressure of stiffness / (π radius²) for each metre of
 /// depth. So a tip whose whole cross section is d metres deep is pushed back with stiffness · d newtons,
-/// however fine the lattice is.
+/// however fine the lattice is. Where it presses, a damper takes up motion along its radius, and Coulomb
+/// friction motion across: a node that sticks goes with the tip, until what pulls at it is more than
+/// friction.still times the force that presses it; then it slips, and friction.sliding times that force pulls
+/// at it.
 struct Press {
-    vec3 centre = vec3(0);    // m, at the start of the call
-    vec3 velocity = vec3(0);  // m/s; the tip moves with it during the call
-    float radius = 0.01f;     // m
-    float stiffness = 400;    // N/m
+    vec3 centre = vec3(0);       // m, at the start of the call
+    vec3 velocity = vec3(0);     // m/s; the tip moves with it during the call
+    float radius = 0.01f;        // m
+    float stiffness = 400;       // N/m
+    Friction friction = {0, 0};  // a dry finger on skin 0.5, wet steel on tissue 0.1
+    float damping = 0;           // N·s/m, of a tip that is in with its whole cross section; it never pulls
 };
 
 /// Where it is so many seconds later.
@@ -24,10 +30,13 @@ inline Press after(Press press, float seconds) {
     return press;
 }
 
+inline float cross_section(const Press& press) { return 3.14159265f * press.radius * press.radius; }  // m²
+
 /// The pressure of a tip for each metre of depth, Pa/m.
-inline float pressure_per_metre(const Press& press) {
-    return press.stiffness / (3.14159265f * press.radius * press.radius);
-}
+inline float pressure_per_metre(const Press& press) { return press.stiffness / cross_section(press); }
+
+/// Whether a tip resists what moves past it.
+inline bool resists(const Press& press) { return press.friction.still > 0 || press.damping > 0; }
 
 /// An external action on one node: a force, and a spring of rest length 0 to a moving point, such as a mouse
 /// that drags it. Any number of them may act on a node.

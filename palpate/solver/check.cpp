@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t most_triangles = 1000;
 
+bool is_some(double value) { return value >= 0 && std::isfinite(value); }
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void check_numbers(const Simulation& simulation) {
     auto require = [](bool holds, std::string_view what, std::string_view remedy) {
         if (!holds) throw Error(what, "the simulation", remedy);
     };
-    auto is_some = [](double value) { return value >= 0 && std::isfinite(value); };
     require(simulation.threads >= 1 && simulation.threads <= most_threads,
             fmt::format("{} threads", simulation.threads), fmt::format("use 1 to {}", most_threads));
     require(is_some(simulation.step), "a step that is negative or not finite",
@@ -102,10 +102,15 @@ void check(double seconds, const Influences& influences, const Body& body, const
     };
     auto has = [&](int node) { return node >= 0 && std::size_t(node) < body.count(); };
     require(seconds > 0 && std::isfinite(seconds), "a time that is not above 0 s", "step by more");
-    for (const Press& press : influences.presses)
+    for (const Press& press : influences.presses) {
         require(is_finite(press.centre) && is_finite(press.velocity) && press.radius > 0 &&
                     std::isfinite(press.radius) && press.stiffness >= 0 && std::isfinite(press.stiffness),
                 "a press that is not finite, or has no radius, or a negative stiffness", "give it all three");
+        require(is_some(press.friction.still) && is_some(press.friction.sliding) && is_some(press.damping),
+                "a press whose friction or damping is negative or not finite", "use 0 or more");
+        require(press.friction.sliding <= press.friction.still,
+                "a press with more friction when it slides than when it sticks", "use the same for both");
+    }
     for (const NodePush& push : influences.pushes) {
         require(has(push.node), "a push of a node that the body does not have", "count its nodes from 0");
         require(is_finite(push.to) && is_finite(push.velocity) && is_finite(push.force) &&

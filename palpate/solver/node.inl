@@ -24,6 +24,7 @@
 //   origin()           what this node's position counts from: the world's, or its own place at rest, m
 //   area(), cover()    of this node's outside, m^2, and how far out of the node it lies, m
 //   tip(i)             the RoundTip i
+//   given(i, force)    takes note of what tip i gave to this node besides its tip_force, N
 //   push(), push_target(), push_stiffness()   what pushes this node: a force, N; where a spring draws it, m; its stiffness
 //   corner(i)          corner i of all polygons, m
 //   distance_at(i, p), uphill_at(i, p)   field i at p: the distance, m, and which way it grows
@@ -39,6 +40,9 @@
 #endif
 #ifndef TIPS
 #define TIPS pass.tips
+#endif
+#ifndef RESISTANCE
+#define RESISTANCE (pass.resistance > 0)
 #endif
 #ifndef PUSHES
 #define PUSHES pass.pushes
@@ -121,20 +125,34 @@ ASIDE Real elastic_energy(Real3 position) {
     return energy;
 }
 
-// A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries. Inside tissue it
-// pushes the nodes that it reaches too, or it would fall through once it is some cells deep: in proportion to their volume,
-// so that what is felt does not depend on how fine the cells are.
-FN Real3 tip_force(Real3 position, int i) {
-    RoundTip t = tip(i);
-    Real3 away = origin() + position - xyz(t.place);
-    Real square = squared(away);
-    Real inverse = inversesqrt(square);
+// Where a node is at a round tip.
+struct AtTip {
+    Real3 away;     // from the tip's centre, m
+    Real  inverse;  // of its length, 1/m
+    Real  pushed;   // m^2
+    Real  depth;    // m; 0: it does not touch
+};
+
+// Inside tissue a tip pushes the nodes that it reaches too, or it would fall through once it is some cells deep: in
+// proportion to their volume, so that what is felt does not depend on how fine the cells are.
+FN AtTip at_tip(Real3 position, RoundTip t) {
+    AtTip here;
+    here.away = origin() + position - xyz(t.place);
+    Real square = squared(here.away);
+    here.inverse = inversesqrt(square);
     Real part = min(Real(pass.cell_size) / Real(t.place.w), Real(1.0f));
     Real inner = part * Real(pass.cell_size * pass.cell_size);
-    Real pushed = select(area() > Real(0.0f), area(), inner);
+    here.pushed = select(area() > Real(0.0f), area(), inner);
     Real carried = select(area() > Real(0.0f), cover(), Real(0.0f));
-    Real depth = max(Real(t.place.w) + carried - square * inverse, Real(0.0f));
-    return (Real(t.push.x) * pushed * depth * inverse) * away;
+    here.depth = max(Real(t.place.w) + carried - square * here.inverse, Real(0.0f));
+    return here;
+}
+
+// A round tip pushes out of its centre, in proportion to the depth of the surface that the node carries.
+FN Real3 tip_force(Real3 position, int i) {
+    RoundTip t = tip(i);
+    AtTip here = at_tip(position, t);
+    return (Real(t.push.x) * here.pushed * here.depth * here.inverse) * here.away;
 }
 
 FN Real3 push_force(Real3 position) {
@@ -168,6 +186,37 @@ FN Real3 acceleration(Node node) {
 }
 
 // ---- motion ----
+
+// How a tip resists what moves past it: a damper along its radius, which never pulls, and dry friction across. Both look at
+// the velocity that the node would have after this pass, so that what sticks goes with the tip and does not creep, and so
+// that they take no more than all of that velocity, however strong they are. `start`, `change`: as in integrate().
+ASIDE Real3 tip_resistance(Node start, Real3 position, Real3 change, int i) {
+    RoundTip t = tip(i);
+    AtTip here = at_tip(position, t);
+    if (!any_node(here.depth > Real(0.0f))) return Real3(0.0f, 0.0f, 0.0f);
+    Real3 normal = here.inverse * here.away;
+    Real3 speed = start.velocity + Real(pass.kick) * change - xyz(t.velocity);
+    Real outward = dot(speed, normal), gain = Real(pass.kick) * start.inverse_mass;  // m/s for each newton
+    Real spring = Real(t.push.x) * here.pushed * here.depth;
+    Real damper = select(here.depth > Real(0.0f), Real(t.push.y) * here.pushed, Real(0.0f));
+    Real damped = max(-outward * damper / (Real(1.0f) + gain * damper), -spring);
+    Real3 slip = speed - outward * normal;
+    Real square = squared(slip), inverse = inversesqrt(square);
+    Real stops = square * inverse / max(gain, Real(1e-30f)), pressed = spring + damped;
+    Real held = select(stops <= Real(t.push.z) * pressed, stops, Real(t.push.w) * pressed);
+    return damped * normal - (held * inverse) * slip;
+}
+
+// `change` with what all tips resist, one after the other.
+FN Real3 resisted(Node start, Real3 position, Real3 change) {
+    if (!RESISTANCE) return change;
+    for (int i = 0; i < TIPS; ++i) {
+        Real3 force = tip_resistance(start, position, change, i);
+        given(i, force);
+        change += start.inverse_mass * force;
+    }
+    return change;
+}
 
 // One pass of a step that began at `start`: from its velocity and position on, with the velocity and the
 // acceleration of `now`. What has no inverse mass keeps its velocity.

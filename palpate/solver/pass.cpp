@@ -106,7 +106,9 @@ void place_tips(std::vector<RoundTip>& tips, const Influences& influences, doubl
     tips.clear();
     for (const Press& press : influences.presses)
         tips.push_back({vec4(press.centre + float(time) * press.velocity, press.radius),
-                        vec4(pressure_per_metre(press), 0, 0, 0)});
+                        vec4(pressure_per_metre(press), press.damping / cross_section(press),
+                             float(press.friction.still), float(press.friction.sliding)),
+                        vec4(press.velocity, 0)});
 }
 
 void place_obstacles(Pass& pass, const Simulation& simulation, const Influences& influences, double time,

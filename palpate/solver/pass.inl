@@ -25,7 +25,8 @@ struct Obstacle {
 // A round tip that presses, where it is in this pass. There may be any number, so they lie beside the Pass.
 struct RoundTip {
     vec4  place;       // centre; radius
-    vec4  push;        // x: pressure for each metre of depth, Pa/m
+    vec4  push;        // pressure for each metre of depth, Pa/m; for each m/s, Pa s/m; friction: still, sliding
+    vec4  velocity;    // m/s
 };
 
 struct Pass {
@@ -45,15 +46,15 @@ struct Pass {
     int   obstacles;
     int   last;        // 1 in the last pass of a step, 2 in that of a call, else 0
     float time;        // s, from the start of the call to where forces are taken
-    int   only_shifts;   // 1: nothing moves, but places and velocities are counted from another origin
+    int   resistance;  // 1: tips resist what moves past them
     float shear;       // of tissue, Pa: Lamé's parameters
     float lame;
     float cell_size;   // m
     float bend;        // N/m: how its cells resist being bent
     float twist;       // and twisted
     vec4  origin_speed;  // m/s, at which the origin of places goes on, and from which velocities are counted
-    vec4  place_shift;   // m, that places lose where a pass only shifts,
-    vec4  speed_shift;   // and m/s, that velocities do
+    vec4  place_shift;   // w: 1 where nothing moves, but places and velocities are counted from another origin: they lose
+    vec4  speed_shift;   // these, m and m/s
     Obstacle obstacle[16];
     LinkNumbers spring[32];
 };

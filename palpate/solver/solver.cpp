@@ -131,6 +131,7 @@ Stats Solver::advance(double seconds, int steps, const Influences& influences) {
     Pass constant = make_pass(body_, simulation_, origin_);
     constant.wind = vec4(local.influences.wind, simulation_.air);
     constant.tips = int(influences.presses.size());
+    constant.resistance = std::ranges::any_of(influences.presses, resists) ? 1 : 0;
     constant.pushes = influences.pushes.empty() ? 0 : 1;
     const std::vector<NodePush> pushes = by_node(local.influences.pushes);
     const Call call{scheme_,  simulation_, local.influences, local.guides, pushes,

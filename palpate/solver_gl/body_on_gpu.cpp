@@ -181,7 +181,7 @@ std::string links_of(const Pass& pass, const Placement& placement) {
 }  // namespace
 
 Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
-             bool touched, bool tiled) {
+             Tools tools, bool tiled) {
     const bool sums = needs(scheme(simulation.integrator), sum);
     std::string text = "#version 450 core\n";
     auto define = [&](bool holds, const std::string& what) {
@@ -205,8 +205,9 @@ Text physics(const Body& body, const Simulation& simulation, const Placement& pl
     define(!(body.link_damping > 0), "LINK_DAMPING false");
     define(!(simulation.air > 0), "WIND false");
     define(simulation.colliders.empty(), "OBSTACLES 0");
-    define(!touched, "TIPS 0");
-    define(!touched, "PUSHES 0");
+    define(tools == Tools::none, "TIPS 0");
+    define(tools == Tools::none, "PUSHES 0");
+    define(tools != Tools::resisting, "RESISTANCE false");
     define(width > 0, fmt::format("FLAT {}", width));
     Text made{{}, sums, placement.slots};
     if (stencil) text += links_of(pass, placement);
@@ -301,7 +302,7 @@ void BodyOnGpu::push(std::span<const NodePush> by_nodes, std::span<const NodePus
 
 void BodyOnGpu::place(std::span<const RoundTip> tips) {
     std::vector<vec4> values;
-    for (const RoundTip& tip : tips) values.insert(values.end(), {tip.place, tip.push});
+    for (const RoundTip& tip : tips) values.insert(values.end(), {tip.place, tip.push, tip.velocity});
     put(tips_, values);
     tips_->bind(tips_unit);
 }

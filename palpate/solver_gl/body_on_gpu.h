@@ -11,10 +11,17 @@
 
 namespace palpate::gpu {
 
+/// What acts on a body besides colliders and wind.
+enum class Tools {
+    none,
+    pushing,    // tips that only push, and pushes of nodes
+    resisting,  // and tips with friction or a damper
+};
+
 /// The physics of a body as GLSL, with or without tools. What cannot act is left out: a software driver runs
 /// both sides of every branch.
 Text physics(const Body& body, const Simulation& simulation, const Placement& placement, int width,
-             bool touched, bool tiled);
+             Tools tools, bool tiled);
 
 /// All that nodes look at besides the moving state: what they are made of, the pass, guides and obstacles.
 class BodyOnGpu {

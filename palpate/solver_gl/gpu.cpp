@@ -64,8 +64,8 @@ class Gpu final : public Machine {
           width_(simulation.backend == Backend::fragment ? row : 0),
           on_gpu_(body_, simulation_, placement_),
           tiled_(simulation.backend == Backend::compute && tiles.value_or(!context_.software())),
-          alone_(make_pipeline(simulation.backend, text(false, tiled_))),
-          closing_(compute_program(text(false, false), "closing.comp", closing_comp)),
+          alone_(make_pipeline(simulation.backend, text(Tools::none, tiled_))),
+          closing_(compute_program(text(Tools::none, false), "closing.comp", closing_comp)),
           quiet_(make_pass(body_, simulation_)),
           shown_positions_(gl::Buffer::room(body_.count() * sizeof(vec4))),
           shown_normals_(gl::Buffer::room(body_.count() * sizeof(vec4))),
@@ -77,7 +77,7 @@ class Gpu final : public Machine {
         if (adds_up()) next_sum_.emplace(make_state());
         before_.emplace(make_state());
         if (tissue_of(body_))
-            cells_.emplace(Cells{compute_program(text(false, false), "cells.comp", cells_comp),
+            cells_.emplace(Cells{compute_program(text(Tools::none, false), "cells.comp", cells_comp),
                                  gl::Field(GL_RGBA32F, sizeof(vec4), 8 * body_.cells.size(), 0)});
     }
 
@@ -93,7 +93,7 @@ class Gpu final : public Machine {
         const Influences& influences = call.influences;
         on_gpu_.lead(call.guides);
         const bool touches = !influences.presses.empty() || !influences.pushes.empty();
-        const Touched* tools = touches ? &touched() : nullptr;
+        const Touched* tools = touches ? &touched(call.constant.resistance > 0) : nullptr;
         Pipeline& pipeline = tools ? *tools->pipeline : *alone_;
         on_gpu_.bind();
         if (tools) {
@@ -104,8 +104,8 @@ class Gpu final : public Machine {
             on_gpu_.upload(pass);
             if (tools) on_gpu_.place(plan.tips);
             look_at(*states_[plan.at]);
-            if (tools && plan.impulse > 0) add_impulses(*tools, call, plan.impulse);
             if (pass.kick > 0) work_out_cells();
+            if (tools && plan.impulse > 0) add_impulses(*tools, call, plan);
             run(pipeline, plan);
         });
         return close(influences, call.origin.after(call.steps * call.step), call.step);
@@ -134,8 +134,7 @@ class Gpu final : public Machine {
         context_.make_current();
         const gl::Visit visit;
         Pass pass = quiet_;
-        pass.only_shifts = 1;
-        pass.place_shift = vec4(vec3(place), 0);
+        pass.place_shift = vec4(vec3(place), 1);
         pass.speed_shift = vec4(vec3(velocity), 0);
         std::swap(*states_[current], write_beside(pass));
     }
@@ -223,14 +222,16 @@ class Gpu final : public Machine {
         std::unique_ptr<Pipeline> pipeline;
         gl::Program impulses;
     };
-    const Touched& touched() {
-        if (!touched_)
-            touched_ = Touched{make_pipeline(simulation_.backend, text(true, tiled_)),
-                               compute_program(text(true, false), "touch.comp", touch_comp)};
-        return *touched_;
+    const Touched& touched(bool resists) {
+        std::optional<Touched>& made = resists ? resisted_ : touched_;
+        const Tools tools = resists ? Tools::resisting : Tools::pushing;
+        if (!made)
+            made = Touched{make_pipeline(simulation_.backend, text(tools, tiled_)),
+                           compute_program(text(tools, false), "touch.comp", touch_comp)};
+        return *made;
     }
-    Text text(bool with_tools, bool tiled) const {
-        return physics(body_, simulation_, placement_, width_, with_tools, tiled);
+    Text text(Tools tools, bool tiled) const {
+        return physics(body_, simulation_, placement_, width_, tools, tiled);
     }
 
     bool adds_up() const { return needs(scheme_, sum); }
@@ -251,8 +252,7 @@ class Gpu final : public Machine {
     // No pass writes what it reads: the last of several writes `further`, which then is the current state.
     void run(Pipeline& pipeline, const PassPlan& plan) {
         const bool over = plan.next == current;
-        const Moving &now = *states_[plan.at],
-                     &start = plan.start == sum ? *states_[sum] : *states_[plan.start];
+        const Moving &now = *states_[plan.at], &start = *states_[plan.start];
         const Moving& next = *states_[over ? further : plan.next];
         const Moving& total = plan.opens || !adds_up() ? now : *states_[sum];
         pipeline.pass({now, start, states_[current]->positions, total, next, adds_up() ? *next_sum_ : next});
@@ -278,12 +278,13 @@ class Gpu final : public Machine {
         return states_[scheme_.stages.size() == 1 ? between : further]->positions;
     }
 
-    void add_impulses(const Touched& tools, const Call& call, double seconds) const {
+    void add_impulses(const Touched& tools, const Call& call, const PassPlan& plan) const {
         tools.impulses.use();
-        tools.impulses.set("seconds", float(seconds));
+        tools.impulses.set("seconds", float(plan.impulse));
         tools.impulses.set("first_push", int(call.pushes.size()));
         tools.impulses.set("pushes_given", int(call.influences.pushes.size()));
         tools.impulses.set("count", int(placement_.rim.size()));
+        states_[plan.start]->velocities.bind(start_velocities_unit);
         on_gpu_.bind_rim();
         answers_.bind_impulses();
         glDispatchCompute(GLuint(adders_ / group_size), 1, 1);
@@ -334,7 +335,7 @@ class Gpu final : public Machine {
     std::unique_ptr<Pipeline> alone_;  // with no tools
     gl::Program closing_;
     std::optional<Cells> cells_;
-    std::optional<Touched> touched_;
+    std::optional<Touched> touched_, resisted_;
     const Pass quiet_;                         // nothing touches or moves it
     mutable std::optional<Moving> states_[4];  // StateBuffer
     std::optional<Moving> next_sum_, before_;

@@ -8,7 +8,7 @@ layout(binding = traits_unit) uniform usamplerBuffer traits;   // of a slot: two
 layout(binding = ties_unit) uniform samplerBuffer ties;      // of springs written out: to whom, share, stiffness, rest; behind them hinges and cells; or strengths
 layout(binding = guides_unit) uniform samplerBuffer guides;    // of nodes of infinite mass, in pairs: velocity; where to, w: 1 if anywhere
 layout(binding = distances_unit) uniform samplerBuffer distances; // of fields, one after the other
-layout(binding = tips_unit) uniform samplerBuffer tips;        // in pairs: as a RoundTip
+layout(binding = tips_unit) uniform samplerBuffer tips;        // in threes: as a RoundTip
 layout(binding = push_of_unit) uniform isamplerBuffer push_of; // of a slot: the number of its push, from 1 on; 0: none
 layout(binding = pushes_unit) uniform samplerBuffer pushes;    // in threes: where to, N/m; velocity, and a slot; force
 layout(binding = obstacles_unit) uniform samplerBuffer obstacles; // of fields, in pairs: origin and spacing; dims and first distance; then of polygons: corners
@@ -99,7 +99,8 @@ vec3 cells_force() {
 vec3 origin() { return vec3(0); }
 float area() { return uintBitsToFloat(trait.z); }
 float cover() { return uintBitsToFloat(trait.w); }
-RoundTip tip(int i) { return RoundTip(texelFetch(tips, 2 * i), texelFetch(tips, 2 * i + 1)); }
+RoundTip tip(int i) { return RoundTip(texelFetch(tips, 3 * i), texelFetch(tips, 3 * i + 1), texelFetch(tips, 3 * i + 2)); }
+void given(int i, vec3 force) {}  // touch.comp works it out
 vec4 push_part(int part) {
     int number = texelFetch(push_of, id).x;
     return number > 0 ? texelFetch(pushes, 3 * (number - 1) + part) : vec4(0);

@@ -16,14 +16,14 @@ Node node_of(Kept kept) {
 // `was`: where the node was when the step began.
 Kept pass_node(Kept now, Kept start, vec3 was, inout Kept sum) {
     if (now.position.w < 0) return now;
-    if (pass.only_shifts > 0) {
+    if (pass.place_shift.w > 0) {
         now.position.xyz -= pass.place_shift.xyz;
         now.velocity.xyz -= pass.speed_shift.xyz;
         return now;
     }
     Node node = node_of(now);
     vec3 change = vec3(0);
-    if (pass.kick > 0) change = acceleration(node);
+    if (pass.kick > 0) change = resisted(node_of(start), node.position, acceleration(node));
 #ifdef SUMS
     if (pass.part > 0) {
         Node total = collect(node_of(sum), node, change);

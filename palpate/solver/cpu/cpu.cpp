@@ -184,7 +184,8 @@ class Cpu final : public Machine {
             }
             if (touched || !call.simulation.colliders.empty()) kernels_.find_bounds(begin, first, end);
             call.for_each_pass([&](const Pass& pass, const PassPlan& plan) {
-                const Task task{memory_.view(), pass, plan, states, moved, &pushing, ring_of(member)};
+                const Task task{memory_.view(),  pass,         plan, states, moved, &pushing,
+                                ring_of(member), given_.data()};
                 aim(pushing, mine, pass.time);
                 if (plan.impulse > 0) {
                     if (pass.tips > 0) kernels_.give(task, first, end, given_.data());

@@ -157,13 +157,17 @@ FN void move(const Task& s, const typename Physics::WithPass& pass,
                  total = s.states[sum];
     for_each_pack<Physics>(s, pass, constants, at, block, [&](Physics& physics, std::ptrdiff_t i) INLINED {
         const auto node = load_node<Physics>(s.body, at, i);
-        const Pack3 change = pass.kick > 0 ? physics.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
+        auto from = node;
+        if (s.plan.start != s.plan.at) from = load_node<Physics>(s.body, start, i);
+        Pack3 change = pass.kick > 0 ? physics.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
+        if (pass.kick > 0 && pass.resistance > 0) {
+            physics.impulses = s.given + block * s.pass.tips;
+            change = physics.resisted(from, node.position, change);
+        }
         if (pass.part > 0) {
             const auto before = load_node<Physics>(s.body, s.plan.opens ? at : total, i);
             store_node(physics.collect(before, node, change), total, i);
         }
-        auto from = node;
-        if (s.plan.start != s.plan.at) from = load_node<Physics>(s.body, start, i);
         store_node(physics.integrate(from, node, change), next, i);
     });
 }
@@ -286,13 +290,6 @@ void pass(const Task& s, int first_block, int end_block, Largest& largest) {
 void find_bounds(const Task& s, int first_block, int end_block) {
     for (int b = first_block; b < end_block; ++b)
         s.moved[s.plan.at][b] = bounds_of(s.states[s.plan.at], s.body.blocks[b]);
-}
-
-// Adds up what a register holds, one node after the other.
-FN void add(Pack3 force, double seconds, dvec3& sum) {
-    HWY_ALIGN float x[HWY_LANES(float)], y[HWY_LANES(float)], z[HWY_LANES(float)];
-    store(force, x, y, z, 0);
-    for (std::size_t n = 0; n < lanes(); ++n) sum += seconds * dvec3(x[n], y[n], z[n]);
 }
 
 void give(const Task& s, int first_block, int end_block, dvec3* given) {

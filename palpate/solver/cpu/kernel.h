@@ -126,7 +126,8 @@ struct Task {
     std::array<Bounds*, 4>
         moved;  // of each state and block: how far its nodes have come from their places at rest, m
     const Pushes* pushes = nullptr;
-    CellRing cells = {};  // of whoever works on it
+    CellRing cells = {};     // of whoever works on it
+    dvec3* given = nullptr;  // N s, by tips, as Kernels::give adds it up: a pass adds what they resist
 };
 
 /// The largest of what a pass saw at the end of a call, squared.

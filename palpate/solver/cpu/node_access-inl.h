@@ -5,13 +5,20 @@
 // A pass in which only springs and gravity act. What is constant zero here, the compiler leaves out.
 struct QuietPass : Pass {
     static constexpr float link_damping = 0;
-    static constexpr int tips = 0, pushes = 0, obstacles = 0;
+    static constexpr int tips = 0, resistance = 0, pushes = 0, obstacles = 0;
     static constexpr vec4 wind = vec4(0);
     explicit QuietPass(const Pass& pass) : Pass(pass) {}
 
     // But for tools and obstacles that are far.
     static bool calm(const Pass& p) { return p.link_damping == 0 && p.wind.w == 0; }
 };
+
+// Adds up what a register holds, one node after the other.
+FN void add(Pack3 force, double seconds, dvec3& sum) {
+    HWY_ALIGN float x[HWY_LANES(float)], y[HWY_LANES(float)], z[HWY_LANES(float)];
+    store(force, x, y, z, 0);
+    for (std::size_t n = 0; n < lanes(); ++n) sum += seconds * dvec3(x[n], y[n], z[n]);
+}
 
 // What node.inl asks of every node, whichever springs it has; of hinges only where there are some.
 template <class AnyPass>
@@ -23,7 +30,8 @@ struct NodeAccess {
     const AnyPass& pass;
     const Task& task;
     const Fields& at;
-    std::ptrdiff_t id;  // slot of the first of the nodes
+    std::ptrdiff_t id;          // slot of the first of the nodes
+    dvec3* impulses = nullptr;  // N s, that each tip gives to the nodes of their block
 
     // As Hinges says.
     struct HingeRecord {
@@ -55,6 +63,9 @@ struct NodeAccess {
     FN Pack area() const { return load(body.area + id); }
     FN Pack cover() const { return load(body.cover + id); }
     RoundTip tip(int i) const { return task.plan.tips[std::size_t(i)]; }
+    FN void given(int i, Pack3 force) const {
+        if (any_node(dot(force, force) > 0.0f)) add(force, task.plan.impulse, impulses[i]);
+    }
     FN Pack3 push() const {
         const Pushes& p = *task.pushes;
         return load(p.force_x, p.force_y, p.force_z, id);
@@ -105,14 +116,15 @@ using VolumeStencil = Stencil<int(volume_links.size()), 2, volume_links>;
 using ClothStencil = Stencil<int(cloth_links.size()), 2, cloth_links>;
 
 // The members of a base that depends on a template must be named.
-#define USE_NODE_ACCESS(P)                                                                                  \
-    using NodeAccess<P>::body, NodeAccess<P>::pass, NodeAccess<P>::task, NodeAccess<P>::at,                 \
-        NodeAccess<P>::id, NodeAccess<P>::origin, NodeAccess<P>::area, NodeAccess<P>::cover,                \
-        NodeAccess<P>::tip, NodeAccess<P>::push, NodeAccess<P>::push_target, NodeAccess<P>::push_stiffness, \
-        NodeAccess<P>::corner, NodeAccess<P>::cell_axis, NodeAccess<P>::distance_at,                        \
-        NodeAccess<P>::uphill_at, NodeAccess<P>::hinges, NodeAccess<P>::hinge_end,                          \
-        NodeAccess<P>::hinge_toward, NodeAccess<P>::hinge_passing, NodeAccess<P>::hinge_stiffness,          \
-        NodeAccess<P>::hinge_rest, NodeAccess<P>::hinge_area_square, NodeAccess<P>::of_nodes;               \
+#define USE_NODE_ACCESS(P)                                                                           \
+    using NodeAccess<P>::body, NodeAccess<P>::pass, NodeAccess<P>::task, NodeAccess<P>::at,          \
+        NodeAccess<P>::id, NodeAccess<P>::origin, NodeAccess<P>::area, NodeAccess<P>::cover,         \
+        NodeAccess<P>::tip, NodeAccess<P>::given, NodeAccess<P>::push, NodeAccess<P>::push_target,   \
+        NodeAccess<P>::push_stiffness, NodeAccess<P>::corner, NodeAccess<P>::cell_axis,              \
+        NodeAccess<P>::distance_at, NodeAccess<P>::uphill_at, NodeAccess<P>::hinges,                 \
+        NodeAccess<P>::hinge_end, NodeAccess<P>::hinge_toward, NodeAccess<P>::hinge_passing,         \
+        NodeAccess<P>::hinge_stiffness, NodeAccess<P>::hinge_rest, NodeAccess<P>::hinge_area_square, \
+        NodeAccess<P>::of_nodes;                                                                     \
     using typename NodeAccess<P>::Real, typename NodeAccess<P>::Real3;
 
 // Nodes of a grid: their neighbours along a link are as far away for all of them.

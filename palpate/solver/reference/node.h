@@ -69,6 +69,8 @@ struct NodePhysics {
     Real outside_area, outside_cover;
     std::span<const RoundTip> tips;
     const Eight* cell_pushes = nullptr;  // of each cell, on its corners
+    double impulse = 0;                  // s, over which forces act,
+    dvec3* impulses = nullptr;           // and what each tip gives by them, N s
 
     Real3 toward(Real3 p, int l) const { return now.positions[std::size_t(ties[l].to)] - p; }
     Real3 passing(Real3 v, int l) const { return now.velocities[std::size_t(ties[l].to)] - v; }
@@ -102,6 +104,7 @@ struct NodePhysics {
     Real area() const { return outside_area; }
     Real cover() const { return outside_cover; }
     RoundTip tip(int i) const { return tips[std::size_t(i)]; }
+    void given(int i, Real3 force) const { impulses[i] += impulse * dvec3(force); }
     const NodePush* own_push() const {
         const int number = world.push_of[std::size_t(id)];
         return number < 0 ? nullptr : &world.pushes[std::size_t(number)];

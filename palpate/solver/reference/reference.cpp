@@ -112,12 +112,15 @@ class Reference final : public Machine {
         if (pass.kick > 0) pushes = cell_pushes(at, pass);
         for (std::size_t i = 0; i < body_.count(); ++i) {
             Physics physics = see(i, at, pass, plan, pushes);
-            const Node node = load(at, i);
-            const Real3 change = pass.kick > 0 ? physics.acceleration(node) : Real3(0);
+            physics.impulse = plan.impulse;
+            physics.impulses = found.by_presses.data();
+            const Node node = load(at, i), from = load(start, i);
+            const Real3 change =
+                pass.kick > 0 ? physics.resisted(from, node.position, physics.acceleration(node)) : Real3(0);
             if (pass.part > 0)
                 store(physics.collect(load(plan.opens ? at : total, i), node, change), total, i);
             const Real3 was = states_[current].positions[i];
-            const Node moved = physics.collide(physics.integrate(load(start, i), node, change), was);
+            const Node moved = physics.collide(physics.integrate(from, node, change), was);
             store(moved, next, i);
             if (!plan.ends) continue;
             const Real3 along(pass.origin_speed);
