@@ -162,6 +162,17 @@ Acting everything(const Body& body) {
     return on;
 }
 
+Acting rubbing(const Body& body) {
+    Acting on = everything(body);
+    on.presses[0].friction = {0.4, 0.4};
+    on.presses[0].velocity += vec3(0.1f, 0.05f, 0);
+    on.presses.push_back(on.presses[0]);
+    on.presses[1].centre += vec3(0.004f, 0.001f, 0);
+    on.presses[1].velocity = {0.02f, -0.1f, 0.05f};
+    on.presses[1].damping = 0.05f;
+    return on;
+}
+
 Acting many_tools(const Body& body) {
     std::mt19937 random(9);
     auto any = [&](float most) { return std::uniform_real_distribution<float>(-most, most)(random); };

@@ -37,6 +37,8 @@ struct Acting {
     Influences influences() const { return {presses, pushes, moves, motions, wind}; }
 };
 Acting everything(const Body& body);
+/// And two tips with friction, one of which has a damper too, where the one tip was.
+Acting rubbing(const Body& body);
 /// 20 tips and 300 pushes, several on some nodes, with forces and without springs among them.
 Acting many_tools(const Body& body);
 

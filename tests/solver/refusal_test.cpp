@@ -52,7 +52,9 @@ TEST_P(Refuses, WhatCannotActOnABodyOrBePutBack) {
 
     for (const Press& press :
          {Press{.centre = vec3(0, none, 0)}, Press{.velocity = vec3(endless)}, Press{.radius = 0},
-          Press{.radius = -1}, Press{.radius = none}, Press{.stiffness = -1}, Press{.stiffness = none}})
+          Press{.radius = -1}, Press{.radius = none}, Press{.stiffness = -1}, Press{.stiffness = none},
+          Press{.friction = {-1, -1}}, Press{.friction = {none, 0}}, Press{.friction = {0.2, 0.3}},
+          Press{.friction = {endless, 0}}, Press{.damping = -1}, Press{.damping = none}})
         refused("a press", {.presses = {&press, 1}});
 
     for (const NodePush& drag : {NodePush{.node = -1}, NodePush{.node = last + 1}, NodePush{.node = 1 << 30}})
