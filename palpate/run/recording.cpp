@@ -22,7 +22,9 @@ json of_press(const Press& press) {
     return {{"centre", numbers(press.centre)},
             {"velocity", numbers(press.velocity)},
             {"radius", press.radius},
-            {"stiffness", press.stiffness}};
+            {"stiffness", press.stiffness},
+            {"friction", {press.friction.still, press.friction.sliding}},
+            {"damping", press.damping}};
 }
 
 json of_pull(const BodyPush& pull) {
@@ -61,17 +63,30 @@ vec3 to_vector(const json& value) {
     return {finite(value[0]), finite(value[1]), finite(value[2])};
 }
 
+// Older recordings have no friction and no damping.
+Press to_press(const json& one) {
+    const json friction = one.value("friction", json{0, 0});
+    const Press press{to_vector(one.at("centre")),
+                      to_vector(one.at("velocity")),
+                      finite(one.at("radius")),
+                      finite(one.at("stiffness")),
+                      {finite(friction.at(0)), finite(friction.at(1))},
+                      finite(one.value("damping", json(0)))};
+    const auto [still, sliding] = press.friction;
+    if (!(press.radius > 0) || !(press.stiffness >= 0) || !(press.damping >= 0) || !(sliding >= 0) ||
+        !(sliding <= still))
+        throw std::string("an invalid press");
+    return press;
+}
+
 Interaction to_hands(const json& one) {
     Interaction hands;
     for (const json& press : one.value("press", json::array()))
-        hands.presses.push_back({to_vector(press.at("centre")), to_vector(press.at("velocity")),
-                                 finite(press.at("radius")), finite(press.at("stiffness"))});
+        hands.presses.push_back(to_press(press));
     for (const json& pull : one.value("pull", json::array()))
         hands.pulls.push_back({pull.at("body").get<std::size_t>(),
                                {pull.at("node").get<int>(), to_vector(pull.at("to")),
                                 to_vector(pull.at("velocity")), finite(pull.at("stiffness"))}});
-    for (const Press& press : hands.presses)
-        if (!(press.radius > 0) || !(press.stiffness >= 0)) throw std::string("an invalid press");
     return hands;
 }
 

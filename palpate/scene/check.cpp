@@ -140,9 +140,14 @@ void check_maps(const BodyRecipe& body, const Require& require) {
                 "remove one or the other");
 }
 
+void check(Friction friction, const std::string& table, const Require& require) {
+    require(table + "sliding", friction.sliding <= friction.still,
+            fmt::format("{0}sliding is above {0}friction, so nothing would ever stick", table),
+            "make it no larger");
+}
+
 void check(const Feel& feel, const Require& require) {
-    require("touch.sliding", feel.friction.sliding <= feel.friction.still,
-            "touch.sliding is above touch.friction, so nothing would ever stick", "make it no larger");
+    check(feel.friction, "touch.", require);
 }
 
 // Common to all recipes of a surface.
@@ -261,6 +266,7 @@ void check(const ToolRecipe& tool, const std::set<std::string>& bodies, const Sc
             "give the point from which the tip comes");
     require("body", tool.body.empty() || bodies.contains(tool.body), "no body \"" + tool.body + "\"",
             "name one of " + all_of(bodies));
+    check(tool.friction, "", require);
     require("relative", !tool.relative || tool.near, "relative without near",
             "give the point near which it grasps a node");
     require("kind", tool.kind != ToolKind::drag || !bodies.empty(), "no body that could be dragged",

@@ -91,13 +91,19 @@ void read_files(Reader& read, const char* key, std::string& first, std::vector<s
     others.erase(others.begin());
 }
 
+const NumberRange tip_damping = zero_or_more("N·s/m", "1 is usual");
+
+void read_friction(Reader& read, Friction& friction) {
+    const NumberRange some = zero_or_more("", "0.3 is usual").usual(0, 3);
+    read("friction", friction.still, some);
+    friction.sliding = std::min(friction.sliding, friction.still);
+    read("sliding", friction.sliding, some);
+}
+
 void read_fields(Reader& read, Feel& feel) {
-    const NumberRange friction = zero_or_more("", "0.3 is usual").usual(0, 3);
     read("stiffness", feel.stiffness, above_zero("N/m", "400 is usual"));
-    read("damping", feel.damping, zero_or_more("N·s/m", "1 is usual"));
-    read("friction", feel.friction.still, friction);
-    feel.friction.sliding = std::min(feel.friction.sliding, feel.friction.still);
-    read("sliding", feel.friction.sliding, friction);
+    read("damping", feel.damping, tip_damping);
+    read_friction(read, feel.friction);
     read("width", feel.dent_width, above_zero("m", "0.01 is usual").usual(1e-5, 1));
     read("yield", feel.yield, zero_or_more("m", "0.004 keeps what is deeper than 4 mm").usual(1e-6, 1));
 }
@@ -291,6 +297,9 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
     read("device", tool.device);
     read("radius", tool.radius, above_zero("m", "a finger's tip has about 0.01 m").usual(1e-5, 1));
     read("stiffness", tool.stiffness, above_zero("N/m", "400 is usual").usual(1e-3, 1e6));
+    read("damping", tool.damping, tip_damping);
+    tool.friction.sliding = Friction{}.sliding;  // where it has any
+    read_friction(read, tool.friction);
     read("from", tool.from, position);
     read("along", tool.along);
     read("shaft", tool.shaft, zero_or_more("m").usual(0, 10));
@@ -312,11 +321,13 @@ void read_fields(Reader& read, ToolRecipe& tool, Scene& scene) {
                 read.fail(*node, fmt::format("\"{}\" is not a key of a {}", key, name_of(tool.kind)), remedy);
     };
     if (tool.kind == ToolKind::drag)
-        refuse({"from", "along", "shaft"}, "remove it");
+        refuse({"from", "along", "shaft", "friction", "sliding", "damping"}, "remove it");
     else
         refuse({"body", "near", "relative"}, "remove it, or write kind = \"drag\"");
     if (!presses_bodies(tool.kind)) refuse({"pad"}, "remove it, or write kind = \"press\" or \"touch\"");
-    if (feels(tool.kind)) refuse({"stiffness"}, "say it of the surfaces: touch = { stiffness = 400 }");
+    if (feels(tool.kind))
+        refuse({"stiffness", "friction", "sliding", "damping"},
+               "say it of the surfaces: touch = { stiffness = 400, friction = 0.3 }");
 }
 
 const NumberRange air = zero_or_more("kg/m³", "1.2 is usual").usual(0.01, 2000);

@@ -345,7 +345,7 @@ Experiment lively() {
         experiment.advance(f % 3 ? pulling(8, vec3(0.09f, 0.001f * float(f), 0)) : Interaction());
     experiment.change({"body.1.damping=4", "body.1.youngs_modulus=30000"});
     Interaction press;
-    press.presses.push_back({vec3(0.08f, 0.05f, 0.01f), vec3(0, -0.1f, 0), 0.01f, 200});
+    press.presses.push_back({vec3(0.08f, 0.05f, 0.01f), vec3(0, -0.1f, 0), 0.01f, 200, {0.4, 0.3}, 0.5f});
     for (int f = 0; f < 20; ++f) experiment.advance(press);
     experiment.change({"simulation.integrator=\"midpoint\""});
     experiment.pin(0, {50}, true);
@@ -428,6 +428,14 @@ TEST(Recording, WhatIsWrongWithAFileIsSaid) {
     EXPECT_TRUE(refused(head + R"([{"at":1,"press":[{"centre":[0,0]}]}]})"));
     EXPECT_TRUE(refused(
         head + R"([{"at":1,"press":[{"centre":[0,0,0],"velocity":[0,0,1e99],"radius":1,"stiffness":1}]}]})"));
+    const std::string press =
+        R"([{"at":1,"press":[{"centre":[0,0,0],"velocity":[0,0,1],"radius":1,"stiffness":1)";
+    EXPECT_FALSE(refused(head + press + "}]}]}"));  // as before there was friction
+    EXPECT_FALSE(refused(head + press + R"(,"friction":[0.3,0.2],"damping":1}]}]})"));
+    for (const std::string wrong :
+         {R"("friction":[0.2,0.3])", R"("friction":[0.2])", R"("friction":[0.2,-1])", R"("friction":1)",
+          R"("damping":-1)", R"("damping":[])"})
+        EXPECT_TRUE(refused(head + press + "," + wrong + "}]}]}")) << wrong;
     EXPECT_TRUE(refused(
         head +
         R"([{"at":1,"pull":[{"body":-1,"node":0,"to":[0,0,0],"velocity":[0,0,"x"],"stiffness":1}]}]})"));

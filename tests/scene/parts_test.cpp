@@ -268,6 +268,23 @@ path = [[0, 0, 0, 0], [1, 0.1, 0, 0]]
     expect_words(refusal(small + drag + "path = [[0, 0, 0, 0, 90, 0, 0]]\n"), {"rotation"});
 }
 
+TEST(Scene, PressesWithFriction) {
+    const std::string path = "path = [[0, 0, 0, 0]]\n", press = small + "[[tool]]\n" + path;
+    auto friction_of = [&](const std::string& keys) { return parse(press + keys).tools[0].friction; };
+    EXPECT_EQ(friction_of(""), (Friction{0, 0}));
+    EXPECT_EQ(friction_of("friction = 0.1\n"), (Friction{0.1, 0.1}));
+    EXPECT_EQ(friction_of("friction = 0.5\n"), (Friction{0.5, 0.2}));
+    EXPECT_EQ(friction_of("friction = 0.5\nsliding = 0.4\n"), (Friction{0.5, 0.4}));
+    EXPECT_EQ(parse(press).tools[0].damping, 0);
+    EXPECT_EQ(parse(press + "damping = 2\n").tools[0].damping, 2);
+    for (const std::string key : {"friction", "sliding", "damping"}) {
+        expect_words(refusal(press + key + " = -1\n"), {key, "-1"});
+        for (const std::string kind : {"drag", "dent", "touch"})
+            expect_words(refusal(press + "kind = \"" + kind + "\"\n" + key + " = 0.1\n"), {key, kind});
+    }
+    expect_words(refusal(press + "friction = 0.1\nsliding = 0.2\n"), {"sliding", "friction"});
+}
+
 TEST(Scene, SurfacesThatNothingMovesAndWhatFeelsThem) {
     const std::string skin = R"(
 [[surface]]
