@@ -14,14 +14,15 @@ namespace palpate {
 /// however fine the lattice is. Where it presses, a damper takes up motion along its radius, and Coulomb
 /// friction motion across: a node that sticks goes with the tip, until what pulls at it is more than
 /// friction.still times the force that presses it; then it slips, and friction.sliding times that force pulls
-/// at it.
+/// at it. Skin on metal and plastics has 0.52 and 0.36 (medians of 450 measurements, Veijgen, Masen and van
+/// der Heide 2013), wet tissue on steel about 0.1.
 struct Press {
-    vec3 centre = vec3(0);       // m, at the start of the call
-    vec3 velocity = vec3(0);     // m/s; the tip moves with it during the call
-    float radius = 0.01f;        // m
-    float stiffness = 400;       // N/m
-    Friction friction = {0, 0};  // a dry finger on skin 0.5, wet steel on tissue 0.1
-    float damping = 0;           // N·s/m, of a tip that is in with its whole cross section; it never pulls
+    vec3 centre = vec3(0);    // m, at the start of the call
+    vec3 velocity = vec3(0);  // m/s; the tip moves with it during the call
+    float radius = 0.01f;     // m
+    float stiffness = 400;    // N/m
+    Friction friction = {0, 0};
+    float damping = 0;  // N·s/m, of a tip that is in with its whole cross section; it never pulls
 };
 
 /// Where it is so many seconds later.

@@ -106,7 +106,8 @@ void check(double seconds, const Influences& influences, const Body& body, const
         require(is_finite(press.centre) && is_finite(press.velocity) && press.radius > 0 &&
                     std::isfinite(press.radius) && press.stiffness >= 0 && std::isfinite(press.stiffness),
                 "a press that is not finite, or has no radius, or a negative stiffness", "give it all three");
-        require(is_some(press.friction.still) && is_some(press.friction.sliding) && is_some(press.damping),
+        require(is_some(float(press.friction.still)) && is_some(press.friction.sliding) &&
+                    is_some(press.damping / cross_section(press)),
                 "a press whose friction or damping is negative or not finite", "use 0 or more");
         require(press.friction.sliding <= press.friction.still,
                 "a press with more friction when it slides than when it sticks", "use the same for both");
