@@ -157,17 +157,15 @@ FN void move(const Task& s, const typename Physics::WithPass& pass,
                  total = s.states[sum];
     for_each_pack<Physics>(s, pass, constants, at, block, [&](Physics& physics, std::ptrdiff_t i) INLINED {
         const auto node = load_node<Physics>(s.body, at, i);
-        auto from = node;
-        if (s.plan.start != s.plan.at) from = load_node<Physics>(s.body, start, i);
         Pack3 change = pass.kick > 0 ? physics.acceleration(node) : Pack3(0.0f, 0.0f, 0.0f);
-        if (pass.kick > 0 && pass.resistance > 0) {
-            physics.impulses = s.given + block * s.pass.tips;
-            change = physics.resisted(from, node.position, change);
-        }
+        if (pass.kick > 0 && pass.resistance > 0)
+            change = physics.resisted(load_node<Physics>(s.body, start, i), node.position, change);
         if (pass.part > 0) {
             const auto before = load_node<Physics>(s.body, s.plan.opens ? at : total, i);
             store_node(physics.collect(before, node, change), total, i);
         }
+        auto from = node;
+        if (s.plan.start != s.plan.at) from = load_node<Physics>(s.body, start, i);
         store_node(physics.integrate(from, node, change), next, i);
     });
 }
@@ -269,9 +267,11 @@ void pass(const Task& s, int first_block, int end_block, Largest& largest) {
         const Kept was(s, block);
         cells.up_to(block.end_slot);
         quiet_cells.up_to(block.end_slot);
-        if (!calm || (tools && touched(s, b, s.moved[s.plan.at][b])))
-            move<Physics>(s, s.pass, constants, b);
-        else
+        if (!calm || (tools && touched(s, b, s.moved[s.plan.at][b]))) {
+            Task of_block = s;
+            if (s.given) of_block.given += b * s.pass.tips;
+            move<Physics>(of_block, s.pass, constants, b);
+        } else
             move<Quiet>(s, quiet_pass, quiet_constants, b);
         if (tools || s.pass.obstacles > 0) {
             const Bounds before = s.moved[current][b];  // which the last of several passes writes over

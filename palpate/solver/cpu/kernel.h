@@ -126,8 +126,10 @@ struct Task {
     std::array<Bounds*, 4>
         moved;  // of each state and block: how far its nodes have come from their places at rest, m
     const Pushes* pushes = nullptr;
-    CellRing cells = {};     // of whoever works on it
-    dvec3* given = nullptr;  // N s, by tips, as Kernels::give adds it up: a pass adds what they resist
+    CellRing cells = {};  // of whoever works on it
+    /// N s, that tips give, as Kernels::give adds it up: a pass adds what they resist. While a block moves it
+    /// is the block's.
+    dvec3* given = nullptr;
 };
 
 /// The largest of what a pass saw at the end of a call, squared.

@@ -30,8 +30,7 @@ struct NodeAccess {
     const AnyPass& pass;
     const Task& task;
     const Fields& at;
-    std::ptrdiff_t id;          // slot of the first of the nodes
-    dvec3* impulses = nullptr;  // N s, that each tip gives to the nodes of their block
+    std::ptrdiff_t id;  // slot of the first of the nodes
 
     // As Hinges says.
     struct HingeRecord {
@@ -64,7 +63,7 @@ struct NodeAccess {
     FN Pack cover() const { return load(body.cover + id); }
     RoundTip tip(int i) const { return task.plan.tips[std::size_t(i)]; }
     FN void given(int i, Pack3 force) const {
-        if (any_node(dot(force, force) > 0.0f)) add(force, task.plan.impulse, impulses[i]);
+        if (any_node(dot(force, force) > 0.0f)) add(force, task.plan.impulse, task.given[i]);
     }
     FN Pack3 push() const {
         const Pushes& p = *task.pushes;
