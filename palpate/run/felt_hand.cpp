@@ -66,10 +66,17 @@ Press FeltHand::press(double seconds, std::size_t bodies) {
     const bool jumped = felt_.placed != std::exchange(placed_, felt_.placed);
     const vec3 to = place(), from = jumped ? to : pressed_from_.value_or(to);
     pressed_from_ = to;
-    double stiffness = 0;  // as the device can render it
-    for (std::size_t b = 0; b < bodies; ++b)
-        stiffness = std::max(stiffness, touch_.settings().feels[b].stiffness);
-    return {from, (to - from) / float(seconds), radius(), felt_.part * float(stiffness)};
+    const std::span all(touch_.settings().feels.data(), bodies);  // as the device can render it
+    const bool touches_body = felt_.surface >= 0 && std::size_t(felt_.surface) < bodies;
+    const Feel feel = touches_body ? all[std::size_t(felt_.surface)]
+                      : bodies > 0 ? *std::ranges::max_element(all, {}, &Feel::stiffness)
+                                   : Feel{};
+    return {.centre = from,
+            .velocity = (to - from) / float(seconds),
+            .radius = radius(),
+            .stiffness = felt_.part * float(feel.stiffness),
+            .friction = feel.friction,
+            .damping = felt_.part * float(feel.damping)};
 }
 
 }  // namespace palpate

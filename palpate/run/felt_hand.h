@@ -32,8 +32,9 @@ class FeltHand {
     void tick(double now);
 
     /// What presses the bodies that it feels, during the next `seconds`: a ball of the tip's size, on its way
-    /// from its place() at the last call to that after the last feel() or tick(). Surfaces may differ in how
-    /// stiff they feel; it is as stiff as the stiffest of the first `bodies`, while it touches one of them.
+    /// from its place() at the last call to that after the last feel() or tick(). It presses them, the first
+    /// `bodies` of the surfaces, with the stiffness, friction and damping of the one that it touches deepest;
+    /// of the stiffest, if it touches something else deeper.
     Press press(double seconds, std::size_t bodies);
 
     /// The state at the last feel() or tick(), so that everything in a picture shows the same moment.

@@ -81,8 +81,7 @@ Press to_press(const json& one) {
 
 Interaction to_hands(const json& one) {
     Interaction hands;
-    for (const json& press : one.value("press", json::array()))
-        hands.presses.push_back(to_press(press));
+    for (const json& press : one.value("press", json::array())) hands.presses.push_back(to_press(press));
     for (const json& pull : one.value("pull", json::array()))
         hands.pulls.push_back({pull.at("body").get<std::size_t>(),
                                {pull.at("node").get<int>(), to_vector(pull.at("to")),

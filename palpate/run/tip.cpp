@@ -74,12 +74,9 @@ Press Tip::press(double time, double frame, const std::vector<Skin>& skins) {
         if (recipe_.from) origin_ = brought_to_touch(recipe_, file_, skins);
     }
     const vec3 here = centre(time), there = centre(time + frame);
-    return {here,
-            (there - here) / float(frame),
-            recipe_.radius,
-            recipe_.stiffness,
-            recipe_.friction,
-            recipe_.damping};
+    return {
+        here,           (there - here) / float(frame), recipe_.radius, recipe_.stiffness, recipe_.friction,
+        recipe_.damping};
 }
 
 double indentation(const std::vector<Skin>& untouched, const std::vector<Skin>& now, vec3 centre,

@@ -283,7 +283,7 @@ void Viewer::reset_camera() {
 std::vector<Arrow> Viewer::arrows() const {
     if (!experiment()) return {};
     std::vector<Arrow> arrows = holds_.arrows(experiment()->play().interaction_forces());
-    if (const auto arrow = feeling_.arrow()) arrows.push_back(*arrow);
+    if (const auto arrow = feeling_.arrow(); arrow && shows_tip()) arrows.push_back(*arrow);
     return arrows;
 }
 
@@ -291,12 +291,12 @@ Traces Viewer::traces() const {
     const Play& play = experiment()->play();
     Traces traces;
     holds_.add_to(traces, play, options.tip);
-    feeling_.add_to(traces, play.skins().size(), options.tip);
+    if (shows_tip()) feeling_.add_to(traces, play.skins().size(), options.tip);
     return traces;
 }
 
 void Viewer::look() {
-    if (experiment()) views_.look(traces(), feeling_.is_seen() || filming(), !filming());
+    if (experiment()) views_.look(traces(), shows_tip() || filming(), !filming());
 }
 
 void Viewer::draw() {

@@ -100,7 +100,7 @@ class Viewer {
     bool is_holding() const { return holds_.has_own() || feeling_.is_pressing(); }
     bool touched() const { return touched_; }  // whether the user has interacted yet
     const FeltHand* feeling() const { return feeling_.hand(); }
-    bool shows_tip() const { return feeling_.is_seen(); }
+    bool shows_tip() const { return feeling_.is_seen() && !holds_.has_own(); }
     const Readings& readings() const { return readings_; }
 
  private:

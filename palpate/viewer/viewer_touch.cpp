@@ -217,7 +217,6 @@ std::optional<Arrow> ViewerTouch::arrow() const {
 }
 
 void ViewerTouch::add_to(Traces& traces, std::size_t surfaces, float tip) const {
-    if (!is_seen()) return;
     const Felt& felt = hand_->felt();
     const vec3 hand = hand_->place();
     // A small ball, or it would hide the dent; the controls draw a ring of the tip's size.

@@ -427,10 +427,11 @@ Report press_by(const std::string& tool, const std::string& body = "", const std
         {});
 }
 
-// On a script it feels what a press of the same size and stiffness is pushed back with, at rest and on the
-// way; an arm yields to it.
+// On a script it feels what a press of the same size and stiffness is pushed back with, at rest and
+// on the way; an arm yields to it.
 TEST(Play, AHandFeelsTheBodyThatItPresses) {
-    const std::string touch = "kind = \"touch\"\n", feel = "touch = { stiffness = 500 }\n";
+    const std::string touch = "kind = \"touch\"\n",
+                      feel = "touch = { stiffness = 500, friction = 0, damping = 0 }\n";
     const Report pressed = press_by("kind = \"press\"\nstiffness = 500\n");
     const double at_rest = pressed.tools[0].force.back();
     EXPECT_GT(at_rest, 0.05);
@@ -447,6 +448,40 @@ TEST(Play, AHandFeelsTheBodyThatItPresses) {
     EXPECT_GE(arm.tools[0].force.back(), 0.5 * at_rest);
     const auto& last = arm.tools[0].force;
     EXPECT_LE(std::abs(last[last.size() - 20] / last.back() - 1), 0.01);  // it stands still
+}
+
+// It drags what it strokes along with it, and feels that: as much as a press of the same friction, until it
+// slips.
+TEST(Play, AHandStrokesWithFriction) {
+    auto stroked = [](const std::string& tool, const std::string& feel) {
+        const Scene stroke = scene(
+            "[[body]]\nname = \"block\"\ndims = [17, 7, 11]\nspacing = 0.006\nyoungs_modulus = 4000\n"
+            "density = 1000\ndamping = 10\npin = { below = 0 }\n" +
+            feel + "[[tool]]\nradius = 0.012\nfrom = [0.03, 0.3, 0.03]\n" + tool +
+            "path = [[0, 0, 0.003, 0], [1.2, 0, 0.003, 0], [1.4, 0, -0.003, 0], [2, 0.03, -0.003, 0], "
+            "[3, 0.03, -0.003, 0]]\n");
+        const Models made = build(stroke);
+        Report report;
+        Play play(stroke, made, report, nullptr, {}, true);
+        std::vector<double> ratios;  // of friction to the normal force, each frame
+        for (int frame = 0; frame < 119; ++frame) {
+            EXPECT_TRUE(play.advance(frame * frame_seconds, frame_seconds));
+            const ToolContact& last = play.contacts().back();
+            ratios.push_back(last.normal() > 0.01 ? last.friction() / last.normal() : 0);
+        }
+        return ratios;
+    };
+    const auto felt =
+        stroked("kind = \"touch\"\n", "touch = { stiffness = 500, friction = 0.4, sliding = 0.4 }\n");
+    const auto pressed =
+        stroked("kind = \"press\"\nstiffness = 500\nfriction = 0.4\nsliding = 0.4\ndamping = 1\n", "");
+    const auto smooth = stroked("kind = \"touch\"\n", "touch = { stiffness = 500, friction = 0 }\n");
+    for (std::size_t frame = 100; frame < 118; ++frame) {
+        EXPECT_LE(std::abs(felt[frame] - pressed[frame]), 0.04) << frame;
+        EXPECT_GE(felt[frame], 0.25) << frame;
+        EXPECT_LE(felt[frame], 0.5) << frame;
+        EXPECT_LE(smooth[frame], 0.15) << frame;
+    }
 }
 
 // A surface is no stiffer than the device can render, also to the body; and a hand that begins inside presses
