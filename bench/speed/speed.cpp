@@ -156,6 +156,7 @@ const std::vector<Benchmark>& benchmarks() {
         pipeline(),
         heart(),
         touch(),
+        live(),
         tissue_study(),
 #ifdef PALPATE_VIEWER
         viewer(),

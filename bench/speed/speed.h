@@ -109,6 +109,7 @@ std::vector<Case> embed_cases();
 Benchmark pipeline();      // the 2012 paper's tables
 Benchmark heart();         // the 2005 paper's figures
 Benchmark touch();         // the 2007 paper's table
+Benchmark live();          // a hand that presses what it feels
 Benchmark tissue_study();  // against theory and finite elements
 Benchmark viewer();        // only where the viewer was built (PALPATE_VIEWER)
 
