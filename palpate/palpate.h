@@ -63,6 +63,7 @@
 #include "palpate/run/felt_hand.h"
 #include "palpate/run/framing.h"
 #include "palpate/run/live_touch.h"
+#include "palpate/run/near_skins.h"
 #include "palpate/run/recording.h"
 #include "palpate/run/report.h"
 #include "palpate/run/run.h"

@@ -144,6 +144,51 @@ Embedding embed(const Mesh& surface, const Body& body, Mapping mapping) {
     return {std::move(vertices), std::move(in_bases), {}, body.count()};
 }
 
+namespace {
+
+template <class Vertex>
+std::vector<Vertex> these(const std::vector<Vertex>& all, std::span<const unsigned> vertices) {
+    std::vector<Vertex> some;
+    for (unsigned v : vertices) some.push_back(all[v]);
+    return some;
+}
+
+Framed these(const Framed& all, std::span<const unsigned> vertices) {
+    Framed some;
+    some.vertices = these(all.vertices, vertices);
+    std::vector<int> number(all.frames.size(), -1);
+    auto add = [&](int frame) {
+        const auto f = std::size_t(frame);
+        if (number[f] >= 0) return;
+        number[f] = int(some.frames.size());
+        const int spokes = f > 0 ? all.frames[f - 1].spokes_end : 0,
+                  faces = f > 0 ? all.frames[f - 1].faces_end : 0;
+        Frame copy = all.frames[f];
+        some.spokes.insert(some.spokes.end(), all.spokes.begin() + spokes,
+                           all.spokes.begin() + copy.spokes_end);
+        some.faces.insert(some.faces.end(), all.faces.begin() + faces, all.faces.begin() + copy.faces_end);
+        copy.spokes_end = int(some.spokes.size());
+        copy.faces_end = int(some.faces.size());
+        some.frames.push_back(copy);
+    };
+    for (OnFrames& vertex : some.vertices)
+        for (int& frame : vertex.frames) {
+            add(frame);
+            frame = number[std::size_t(frame)];
+        }
+    return some;
+}
+
+}  // namespace
+
+Embedding part_of(const Embedding& whole, std::span<const unsigned> vertices) {
+    return std::visit(
+        [&](const auto& all) {
+            return Embedding{these(all, vertices), {}, whole.edges, whole.nodes};
+        },
+        whole.vertices);
+}
+
 std::vector<vec3> approximate_normals(const Body& body, std::span<const vec3> positions) {
     if (positions.size() < body.count())
         throw Error(fmt::format("{} positions of {} nodes", positions.size(), body.count()),

@@ -105,6 +105,9 @@ struct Embedding {
 /// (check()), if the body has neither cells nor faces, or if trilinear is requested and it has no cells.
 Embedding embed(const Mesh& surface, const Body& body, Mapping mapping = Mapping::automatic);
 
+/// That of some vertices of the surface, in this order, without tangents: to map fewer.
+Embedding part_of(const Embedding& whole, std::span<const unsigned> vertices);
+
 /// Maps the surface: computes its positions and unit normals from the nodes' current positions and, on
 /// request, its tangents: unit, perpendicular to the normals, with their handedness kept. Outputs are
 /// resized; tangents are empty if the mesh had none. The nodes' approximate normals are needed by one-to-one,

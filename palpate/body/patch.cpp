@@ -41,26 +41,6 @@ bool comes_near(vec3 a, vec3 b, vec3 c, vec3 centre, float radius) {
     return !(glm::distance(middle, centre) > radius + size);
 }
 
-// The numbers of the triangles with finite corners that may come within `radius` of `centre`.
-std::vector<int> near(const Touchable& surface, vec3 centre, float radius) {
-    const std::size_t count = surface.positions.size();
-    std::vector<std::uint8_t> outside(count);
-    for (std::size_t i = 0; i < count; ++i)
-        outside[i] = sides(surface.positions[i], centre - radius, centre + radius);
-    std::vector<int> found;
-    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-        const uvec3 t = surface.triangles[i];
-        if (t.x >= count || t.y >= count || t.z >= count)
-            throw Error("a triangle that refers to missing vertices", "a surface to touch",
-                        "use indices of its own positions");
-        if (outside[t.x] & outside[t.y] & outside[t.z]) continue;
-        const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
-        if (is_finite(a) && is_finite(b) && is_finite(c) && comes_near(a, b, c, centre, radius))
-            found.push_back(int(i));
-    }
-    return found;
-}
-
 // A bound on how far any vertex has moved: the largest move along each axis, taken together. Where a position
 // is not a number, it does not count.
 float largest_move(std::span<const vec3> from, std::span<const vec3> to) {
@@ -95,6 +75,25 @@ double total_size(const std::vector<Tree::Node>& nodes) {
 
 }  // namespace
 
+std::vector<int> triangles_near(const Touchable& surface, vec3 centre, float radius) {
+    const std::size_t count = surface.positions.size();
+    std::vector<std::uint8_t> outside(count);
+    for (std::size_t i = 0; i < count; ++i)
+        outside[i] = sides(surface.positions[i], centre - radius, centre + radius);
+    std::vector<int> found;
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+        const uvec3 t = surface.triangles[i];
+        if (t.x >= count || t.y >= count || t.z >= count)
+            throw Error("a triangle that refers to missing vertices", "a surface to touch",
+                        "use indices of its own positions");
+        if (outside[t.x] & outside[t.y] & outside[t.z]) continue;
+        const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
+        if (is_finite(a) && is_finite(b) && is_finite(c) && comes_near(a, b, c, centre, radius))
+            found.push_back(int(i));
+    }
+    return found;
+}
+
 Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, double time)
     : Patch(faces_near(surfaces, centre, radius), surfaces, centre, radius, time) {}
 
@@ -121,7 +120,7 @@ std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable>
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         const Touchable& surface = surfaces[s];
         place.assign(surface.positions.size(), none);
-        for (int t : near(surface, centre, radius)) {
+        for (int t : triangles_near(surface, centre, radius)) {
             uvec3 triangle = surface.triangles[std::size_t(t)];
             for (int k = 0; k < 3; ++k) {
                 Index& at = place[triangle[k]];
@@ -133,7 +132,8 @@ std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable>
                 triangle[k] = at;
             }
             mesh.triangles.push_back(triangle);
-            from.push_back({int(s), t, surface.is_sheet});
+            const int number = surface.numbers.empty() ? t : surface.numbers[std::size_t(t)];
+            from.push_back({int(s), number, surface.is_sheet});
         }
     }
     Tree tree(mesh);

@@ -17,7 +17,12 @@ struct Touchable {
     std::span<const uvec3> triangles;       // counter-clockwise as seen from outside
     std::span<const vec3> velocities = {};  // m/s, one for each vertex; empty: it stands still
     bool is_sheet = false;                  // it stops a hand from both sides; otherwise only from outside
+    std::span<const int> numbers = {};      // of the triangles, where they are part of a larger surface
 };
+
+/// The triangles with finite corners that may come within `radius` of `centre`, as places in the list. Throws
+/// Error if one refers to missing vertices.
+std::vector<int> triangles_near(const Touchable& surface, vec3 centre, float radius);
 
 /// The triangles near a place that a hand can touch, with their motion, in a bounding volume hierarchy: the
 /// broad phase of contact. Queries allocate nothing, so a haptic loop may make them.

@@ -32,7 +32,7 @@ void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, co
     for (std::size_t s = 0; s < skins.size(); ++s) {
         const Skin& skin = skins[s];
         measure(speeds_[s], before_[s], skin.positions, seconds);
-        surfaces.push_back({skin.positions, *skin.triangles, speeds_[s], skin.is_sheet});
+        surfaces.push_back({skin.positions, *skin.triangles, speeds_[s], skin.is_sheet, skin.numbers});
     }
     const vec3 around = felt_.time > 0 ? felt_.proxy : start_;
     touch_.feel(maker_.next(surfaces, around, reach, time), simulated);
@@ -40,7 +40,7 @@ void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, co
     before_time_ = time;
     // The old dents can only be removed once the touch has the new surfaces.
     if (begins_anew_) touch_.begin_anew();
-    begins_anew_ = false;
+    begins_anew_ = jumps_ = false;
 }
 
 void FeltHand::begin_anew() {

@@ -24,7 +24,14 @@ class FeltHand {
               float reach = std::numeric_limits<float>::infinity(), const Simulated& simulated = {});
 
     /// Says that the skins of the next feel() have jumped instead of moved: ...
-    void expect_jump() { before_.clear(); }
+    void expect_jump() {
+        before_.clear();
+        jumps_ = true;
+    }
+    /// Says where they were at the last feel(), since the next has other vertices.
+    void remember(std::vector<std::vector<vec3>> before) {
+        if (!jumps_) before_ = std::move(before);
+    }
     /// ... and were replaced or reset: dents are removed, and it begins without force.
     void begin_anew();
 
@@ -53,7 +60,7 @@ class FeltHand {
     vec3 start_;
     std::optional<vec3> pressed_from_;  // m
     unsigned placed_ = 0;               // Felt::placed then
-    bool begins_anew_ = false;
+    bool begins_anew_ = false, jumps_ = false;
     PatchMaker maker_;
     std::vector<std::vector<vec3>> before_;  // the last positions of the skins,
     double before_time_ = 0;                 // s, and their time

@@ -29,7 +29,11 @@ Interaction as_of(Interaction hands, double age) {
 }  // namespace
 
 LiveTouch::LiveTouch(Experiment& experiment, std::vector<FeltHand*> hands, Experiment* beside)
-    : experiment_(experiment), beside_(beside), hands_(std::move(hands)), loads_(hands_.size(), dvec3(0)) {
+    : experiment_(experiment),
+      beside_(beside),
+      hands_(std::move(hands)),
+      near_(hands_.size()),
+      loads_(hands_.size(), dvec3(0)) {
     thread_ = std::thread([this] { run(); });
 }
 
@@ -105,10 +109,14 @@ bool LiveTouch::advance(int slices) {
     const std::size_t bodies = experiment_.models().models.size();
     Interaction hands = as_of(besides_, besides_age_);
     const std::size_t first = hands.presses.size();
+    if (std::exchange(shapes_, experiment_.shapes()) != shapes_)
+        for (NearSkins& near : near_) near.forget();
     for (std::size_t h = 0; h < hands_.size(); ++h) {
         const float reach = hands_[h]->radius() + in_reach + fastest_in_reach * float(seconds);
-        hands_[h]->feel(experiment_.play().touchable(), start, reach,
-                        {.surfaces = bodies, .load = loads_[h]});
+        const std::vector<Skin>& skins =
+            near_[h].at(experiment_.play(), experiment_.models(), hands_[h]->place(), reach);
+        if (near_[h].chose()) hands_[h]->remember(near_[h].before());
+        hands_[h]->feel(skins, start, reach, {.surfaces = bodies, .load = loads_[h]});
         hands.presses.push_back(hands_[h]->press(seconds, bodies));
     }
     const bool goes_well = experiment_.advance(hands, slices);

@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/run/experiment.h"
 #include "palpate/run/felt_hand.h"
+#include "palpate/run/near_skins.h"
 #include "palpate/touch/timing.h"
 
 #include <condition_variable>
@@ -51,7 +52,9 @@ class LiveTouch {
     Experiment& experiment_;
     Experiment* const beside_;
     const std::vector<FeltHand*> hands_;
-    std::vector<dvec3> loads_;  // N, on the hands, in the last slice
+    std::vector<NearSkins> near_;  // what each may touch
+    Experiment::Shapes shapes_;    // of those
+    std::vector<dvec3> loads_;     // N, on the hands, in the last slice
     Interaction besides_;
     double besides_age_ = 0;  // s, simulated
     double begun_ = 0;        // s, when it went on, less than a frame ago if it cannot keep up,

@@ -223,15 +223,11 @@ std::vector<Press> Play::press(double time, double seconds, std::span<const dvec
     for (auto& handle : handles_)
         if (auto* one = std::get_if<Probe>(&handle); one && one->presses()) probes.push_back(one);
     auto is_there = [time](const Probe* one) { return one->is_there(time); };
-    if (std::ranges::any_of(probes, [&](const Probe* one) { return is_there(one) && !one->has_begun(); }))
-        skins();
-    else if (std::ranges::any_of(probes, is_there))
-        touchable();
     std::vector<Press> all;
     for (Probe* one : probes) {
         std::optional<dvec3> reaction;
         if (all.size() < reactions.size()) reaction = reactions[all.size()];
-        all.push_back(is_there(one) ? one->press(time, seconds, reaction, skins_, world_.count())
+        all.push_back(is_there(one) ? one->press(time, seconds, reaction, *this, made_)
                                     : Press{.stiffness = 0});
     }
     return all;

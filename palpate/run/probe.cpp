@@ -1,6 +1,7 @@
 #include "palpate/run/probe.h"
 
 #include "palpate/base/error.h"
+#include "palpate/run/play.h"
 #include "palpate/touch/drivers.h"
 
 #include <fmt/format.h>
@@ -45,6 +46,7 @@ Probe::Probe(const ToolRecipe& recipe, const Scene& scene)
 
 void Probe::set(std::vector<Feel> feels) {
     feels_ = std::move(feels);
+    near_.forget();
     if (hand_) hand_->touch().set({.radius = recipe_.radius, .feels = feels_});
 }
 
@@ -64,6 +66,7 @@ void Probe::begin(double time, const std::vector<Skin>& skins) {
 }
 
 void Probe::expect_jump() {
+    near_.forget();
     if (hand_) hand_->expect_jump();
 }
 
@@ -78,12 +81,16 @@ void Probe::advance(double time, double seconds, const std::vector<Skin>& skins,
     tick(time, seconds);
 }
 
-Press Probe::press(double time, double seconds, std::optional<dvec3> reaction, const std::vector<Skin>& skins,
-                   std::size_t bodies) {
-    if (!hand_) begin(time, skins);
+Press Probe::press(double time, double seconds, std::optional<dvec3> reaction, const Play& play,
+                   const Models& models) {
+    if (!hand_) begin(time, play.skins());
     if (reaction && slice_ > 0) load_ = *reaction / slice_;
     slice_ = seconds;
-    hand_->feel(skins, time, recipe_.radius + in_a_slice, {.surfaces = bodies, .load = load_});
+    const float reach = recipe_.radius + in_a_slice;
+    const std::size_t bodies = models.models.size();
+    const std::vector<Skin>& skins = near_.at(play, models, hand_->place(), reach);
+    if (near_.chose()) hand_->remember(near_.before());
+    hand_->feel(skins, time, reach, {.surfaces = bodies, .load = load_});
     tick(time, seconds);
     return hand_->press(seconds, bodies);
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/run/felt_hand.h"
+#include "palpate/run/near_skins.h"
 
 #include <memory>
 #include <optional>
@@ -35,12 +36,10 @@ class Probe {
     /// surface that it shall touch. `moving`: skins may have moved since the last call.
     void advance(double time, double seconds, const std::vector<Skin>& skins, bool moving);
 
-    /// For one that presses, in place of advance(): returns what presses the bodies, which are so many of the
-    /// first skins, from `time` on. `reaction`: N s, of the bodies to what it returned for the slice before,
-    /// if that is known.
-    Press press(double time, double seconds, std::optional<dvec3> reaction, const std::vector<Skin>& skins,
-                std::size_t bodies);
-    bool has_begun() const { return hand_ != nullptr; }
+    /// For one that presses, in place of advance(): returns what presses the bodies from `time` on.
+    /// `reaction`: N s, of the bodies to what it returned for the slice before, if that is known.
+    Press press(double time, double seconds, std::optional<dvec3> reaction, const Play& play,
+                const Models& models);
 
     /// The dents in a surface at a time; only the lasting ones if the tip is gone.
     std::vector<Dent> dents(int surface, double time) const;
@@ -61,6 +60,7 @@ class Probe {
     std::vector<Feel> feels_;
     std::unique_ptr<FeltHand> hand_;
     std::vector<Skin> untouched_;  // of one that presses
+    NearSkins near_;               // that it may touch
     double slice_ = 0;             // s, how long it pressed by the last call,
     dvec3 load_ = dvec3(0);        // N, and what it was pushed back with, as far as is known
     double forces_ = 0;            // N, the sum

@@ -13,6 +13,7 @@ struct Skin {
     std::vector<vec3> positions, normals;
     const std::vector<uvec3>* triangles;  // of the surface at rest
     bool is_sheet = false;                // it encloses no volume, and is felt from both sides
+    std::span<const int> numbers = {};    // of the triangles, where they are part of a larger surface
 };
 
 /// The indentation of surfaces under a round tip, m: how far, at most, a vertex within 1.2 radii of the tip's
