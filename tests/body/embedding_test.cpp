@@ -375,6 +375,30 @@ TEST(Embedding, EachVertexIsTheSameToTheBitBesideAnyOther) {
     }
 }
 
+// Any part of a surface moves as in the whole, to the bit.
+TEST(Embedding, APartFollowsAsTheWholeDoes) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> shake(-0.003f, 0.003f);
+    for (const Carrier& c : {organ_on_a_lattice(), quilt_on_a_cloth()})
+        for (const auto& mapping : names(Mapping{})) {
+            if (mapping.value == Mapping::trilinear && c.body.cells.empty()) continue;
+            const Embedding whole = embed(c.surface, c.body, mapping.value);
+            std::vector<vec3> nodes = c.body.positions;
+            for (vec3& p : nodes) p += vec3(shake(random), shake(random), shake(random));
+            const std::vector<vec3> normals = approximate_normals(c.body, nodes);
+            std::vector<unsigned> some;
+            for (unsigned v = 0; v < c.surface.positions.size(); ++v)
+                if (random() % 7 == 0) some.push_back(v);
+            std::ranges::shuffle(some, random);
+            std::vector<vec3> all, part;
+            deform(whole, {nodes, normals}, all);
+            deform(part_of(whole, some), {nodes, normals}, part);
+            ASSERT_EQ(part.size(), some.size());
+            for (std::size_t i = 0; i < some.size(); ++i)
+                ASSERT_EQ(part[i], all[some[i]]) << c.name << " " << mapping.name;
+        }
+}
+
 TEST(Embedding, CollapsedNodesGiveNoNaN) {
     for (Carrier& c : carriers()) {
         give_tangents(c.surface);

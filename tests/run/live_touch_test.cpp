@@ -4,6 +4,7 @@
 #include "palpate/base/clock.h"
 #include "palpate/base/error.h"
 #include "palpate/base/realtime.h"
+#include "palpate/body/patch.h"
 #include "palpate/run/recording.h"
 #include "palpate/touch/drivers.h"
 #include "tests/refusal.h"
@@ -12,6 +13,8 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <random>
+#include <set>
 
 namespace palpate {
 namespace {
@@ -114,6 +117,37 @@ TEST(LiveTouch, ABodyThatBlowsUpPushesNobody) {
     experiment.undo();
     one->begin_anew();
     EXPECT_TRUE(wait_for(live, [&] { return one->felt().part == 1 && one->felt().force.y > 0.1f; }));
+}
+
+// Of bodies that move, what a hand may touch is all there, where it is, with its own number.
+TEST(NearSkins, HoldAllThatIsNear) {
+    Experiment experiment = block();
+    const Play& play = experiment.play();
+    NearSkins near;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> along(0, 0.06f);
+    int chosen = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+        Interaction pull;
+        pull.pulls.push_back({0, {800, vec3(0.09f, 0.09f, 0.02f), vec3(0), 3}});
+        experiment.advance(pull, 3);
+        const float reach = 0.012f;
+        const vec3 centre =
+            frame % 10 == 0 ? vec3(along(random), 0.04f, along(random)) : vec3(0.02f, 0.04f, 0.03f);
+        const std::vector<Skin> some = near.at(play, experiment.models(), centre, reach);
+        chosen += near.chose();
+        const Skin& whole = play.skins()[0];
+        std::set<int> numbers(some[0].numbers.begin(), some[0].numbers.end());
+        EXPECT_LT(numbers.size(), whole.triangles->size());
+        for (int t : triangles_near({whole.positions, *whole.triangles}, centre, reach))
+            EXPECT_TRUE(numbers.contains(t)) << frame;
+        for (std::size_t t = 0; t < some[0].numbers.size(); ++t)
+            for (int k = 0; k < 3; ++k)
+                EXPECT_EQ(some[0].positions[(*some[0].triangles)[t][k]],
+                          whole.positions[(*whole.triangles)[std::size_t(some[0].numbers[t])][k]]);
+    }
+    EXPECT_GT(chosen, 1);
+    EXPECT_LT(chosen, 40);
 }
 
 // Several hands on several bodies, with something else that acts.
