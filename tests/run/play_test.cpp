@@ -9,6 +9,7 @@
 #include "tests/scratch.h"
 #include "tests/shapes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -482,6 +483,33 @@ TEST(Play, AHandStrokesWithFriction) {
         EXPECT_LE(felt[frame], 0.5) << frame;
         EXPECT_LE(smooth[frame], 0.15) << frame;
     }
+}
+
+// A sheet is felt from both sides, and does not let the hand through.
+TEST(Play, AHandFeelsAClothFromBothSides) {
+    std::vector<int> border;
+    for (int i = 0; i < 21 * 21; ++i)
+        if (i % 21 % 20 == 0 || i / 21 % 20 == 0) border.push_back(i);
+    auto felt_from = [&](int side) {
+        const Report report =
+            run(scene(fmt::format(
+                    "[simulation]\nduration = 2.5\ngravity = [0, 0, 0]\n"
+                    "[[body]]\nname = \"sheet\"\ncloth = [21, 21]\nspacing = 0.005\n"
+                    "springs = {{ structural = 40, shear = 20, flexion = 5 }}\ndensity = 0.3\ndamping = 5\n"
+                    "pin = {{ nodes = [{4}] }}\ntouch = {{ stiffness = 300 }}\n"
+                    "[[tool]]\nkind = \"touch\"\nradius = 0.012\n"
+                    "from = [0.05, 0.05, {0}]\nalong = [0, 0, {1}]\n"
+                    "path = [[0, 0, 0, {2}], [1.2, 0, 0, {2}], [1.5, 0, 0, {3}], [3, 0, 0, {3}]]\n",
+                    0.3 * side, -side, 0.003 * side, -0.012 * side, fmt::join(border, ","))),
+                {});
+        EXPECT_FALSE(report.diverged);
+        return report.tools[0];
+    };
+    const Report::Tool above = felt_from(1), below = felt_from(-1);
+    EXPECT_GT(above.force.back(), 0.02);
+    EXPECT_GT(above.indentation.back(), 0.004);
+    EXPECT_LE(std::abs(above.force.back() / below.force.back() - 1), 0.02);
+    EXPECT_LE(std::abs(above.indentation.back() / below.indentation.back() - 1), 0.02);
 }
 
 // A surface is no stiffer than the device can render, also to the body; and a hand that begins inside presses
