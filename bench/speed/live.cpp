@@ -20,20 +20,23 @@ namespace {
 
 constexpr double seconds_a_round = 2, warm_up = 1.5;  // the latter until its force has ramped up
 constexpr float tip = 0.014f;                         // m
-constexpr int sizes[] = {5'000, 20'000, 80'000};      // nodes
+constexpr struct { int nodes, threads; } sizes[] = {{5'000, 1}, {20'000, 1}, {80'000, 1}, {80'000, 2}};
 
 // The brain without its own tool; where its volume is not there, an ellipsoid of the same size and tissue.
-Prepared subject(int nodes) {
+Prepared subject(int nodes, int threads) {
     SceneText scene = find_scene("brain");
     scene.text.erase(std::min(scene.text.find("[[tool]]"), scene.text.size()));
     try {
-        return prepare(scene, {fmt::format("body.1.nodes={}", nodes), "simulation.threads=1"});
+        return prepare(
+            scene, {fmt::format("body.1.nodes={}", nodes), fmt::format("simulation.threads={}", threads)});
     } catch (const Error& error) {
         fmt::print(stderr, "brain: not available, an ellipsoid stands in: {}\n", error.what());
     }
     const Mesh surface = ellipsoid(vec3(0.07f, 0.065f, 0.09f), 187);
-    return prepare(lattice(surface, {.nodes = nodes, .material = {.youngs_modulus = 1640, .density = 1040}}),
-                   surface);
+    Prepared prepared = prepare(
+        lattice(surface, {.nodes = nodes, .material = {.youngs_modulus = 1640, .density = 1040}}), surface);
+    prepared.models.simulation.threads = threads;
+    return prepared;
 }
 
 // Presses the surface from above beside its middle, 10 mm deep, and strokes it, again and again.
@@ -51,8 +54,8 @@ Path pressing(const Mesh& surface, float beside) {
     return path;
 }
 
-void measure(int nodes, int count, double seconds, Timings& timings) {
-    Experiment experiment(subject(nodes));
+void measure(int nodes, int threads, int count, double seconds, Timings& timings) {
+    Experiment experiment(subject(nodes, threads));
     const Mesh& surface = experiment.models().models[0].surface;
     std::vector<std::unique_ptr<FeltHand>> hands;
     std::vector<FeltHand*> all;
@@ -81,8 +84,9 @@ void measure(int nodes, int count, double seconds, Timings& timings) {
     }
     const double passed = now() - start;
     const LoopTiming& loop = hands[0]->loop().timing();
-    const std::string row = fmt::format("{} hand{}, {} nodes", count, count > 1 ? "s" : "",
-                                        experiment.models().models[0].body.count());
+    const std::string row =
+        fmt::format("{} hand{}, {} nodes, {} thread{}", count, count > 1 ? "s" : "",
+                    experiment.models().models[0].body.count(), threads, threads > 1 ? "s" : "");
     auto add = [&](const char* column, double value) {
         timings.figures.push_back({Cell{"live", row, column}.name(), value});
     };
@@ -101,7 +105,8 @@ void measure(int nodes, int count, double seconds, Timings& timings) {
 Timings run(int rounds) {
     Timings timings;
     for (int count : {1, 2})
-        for (int nodes : sizes) measure(nodes, count, rounds * seconds_a_round, timings);
+        for (const auto& [nodes, threads] : sizes)
+            measure(nodes, threads, count, rounds * seconds_a_round, timings);
     timings.driver = fmt::format("{}.", kernel());
     timings.figures.push_back({"seconds_each", rounds * seconds_a_round});
     return timings;
@@ -114,7 +119,8 @@ std::string text(const Timings& timings) {
     std::string text = fmt::format(
         "{}\n\nA virtual hand presses the top of the brain (tissue of 1.64 kPa) 10 mm deep and strokes it, "
         "for {} s "
-        "a line; nothing is drawn. The body is simulated on one thread, in slices as short as the machine "
+        "a line; nothing is drawn. The body is simulated on one or two threads, in slices as short as the "
+        "machine "
         "affords; *pace* is simulated over real time.\n\n",
         timings.driver, timings.figures.back().value);
     std::vector<std::string> cells{""};

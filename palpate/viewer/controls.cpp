@@ -87,6 +87,24 @@ void plot(const char* name, const Recent& curve) {
                      {ImGui::GetContentRegionAvail().x, 2.6f * ImGui::GetFontSize()});
 }
 
+// The force on the hand over how far the surface has moved under it.
+void plot_touch(const std::vector<vec2>& touch) {
+    vec2 most(1e-6f);
+    for (vec2 one : touch) most = glm::max(most, one);
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), size{ImGui::CalcItemWidth() + 100, 90};
+    ImGui::Dummy(size);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg),
+                       4);
+    std::vector<ImVec2> line;
+    for (vec2 one : touch)
+        line.push_back({corner.x + 4 + (size.x - 8) * one.x / most.x,
+                        corner.y + size.y - 4 - (size.y - 24) * one.y / most.y});
+    list.AddPolyline(line.data(), int(line.size()), ImGui::GetColorU32(ImGuiCol_PlotLines), 0, 1.5f);
+    const std::string text = fmt::format("force up to {:.2f} N, over up to {:.1f} mm", most.y, 1000 * most.x);
+    list.AddText({corner.x + 6, corner.y + 3}, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+}
+
 void show_readings(const Viewer& viewer) {
     const Readings& readings = viewer.readings();
     for (auto [name, curve] :
@@ -115,6 +133,7 @@ void show_readings(const Viewer& viewer) {
         const Felt& felt = hand->felt();
         ImGui::Text("force %.2f N", double(glm::length(felt.force)));
         if (felt.held != Held::no) ImGui::TextColored(quiet, "%s", std::string(name_of(felt.held)).c_str());
+        if (readings.touch.size() > 1) plot_touch(readings.touch);
     }
 }
 

@@ -34,4 +34,16 @@ void Readings::measure(const Experiment& experiment, bool moves) {
     if (!on_gpu(experiment.models().simulation.backend)) energy = experiment.energy();
 }
 
+void Readings::feel(const Felt& felt) {
+    constexpr std::size_t most = 3600;  // pictures: a minute
+    const bool began = felt.surface >= 0 && !touches_;
+    touches_ = felt.surface >= 0;
+    if (began) {
+        touch.clear();
+        touched_ = felt.proxy;
+    }
+    if (touches_ && touch.size() < most)
+        touch.emplace_back(glm::distance(felt.proxy, touched_), glm::length(felt.force));
+}
+
 }  // namespace palpate

@@ -38,12 +38,20 @@ class Readings {
     double largest_speed = 0;      // m/s
     std::size_t memory = 0;        // bytes, of all states
 
+    /// The last touch, from when it began: how far the surface under the tip has moved since, m, and the
+    /// force on the hand, N.
+    std::vector<vec2> touch;
+
     /// To be called once a picture. `moves`: it is not paused.
     void measure(const Experiment& experiment, bool moves);
+    /// The same, of what a hand feels.
+    void feel(const Felt& felt);
 
  private:
     double simulated_ = 0, mapped_ = 0, measured_ = 0, paced_ = 0;  // s, at the picture before
     long pictures_ = 0;
+    bool touches_ = false;
+    vec3 touched_ = vec3(0);  // m, where the touch began
 };
 
 }  // namespace palpate

@@ -112,6 +112,7 @@ void Viewer::advance(int frames) {
     feeling_.live(session_, may_be_live());
     message_.attempt([&] { feeling_.advance(*experiment(), options, sight()); });
     readings_.measure(*experiment(), !options.paused);
+    if (feeling()) readings_.feel(feeling()->felt());
 }
 
 bool Viewer::may_be_live() const {

@@ -81,11 +81,19 @@ void take_all(const std::filesystem::path& folder) {
     photographer.take("viewer-pull.png");
     photographer.let_go();
 
+    photographer.viewer().restart();
+    photographer.wait(0.3);
+    photographer.drag({800, 260}, {900, 330}, false);
+    for (int i = 0; i < 3; ++i) person.button(4, true), person.button(4, false), photographer.rounds(2);
+    photographer.wait(1);
+    photographer.take("viewer-press.png");
+    photographer.let_go();
+
     photographer.open("catheter");
     photographer.viewer().options.tip = 0.008f;
     photographer.wait(0.1);
-    photographer.drag({650, 240}, {645, 245}, false);
-    for (int i = 0; i < 5; ++i) person.button(4, true), person.button(4, false), photographer.rounds(2);
+    photographer.drag({470, 400}, {475, 395}, false);
+    for (int i = 0; i < 8; ++i) person.button(4, true), person.button(4, false), photographer.rounds(2);
     photographer.wait(1.5);
     photographer.take("viewer-dent.png");
     photographer.let_go();

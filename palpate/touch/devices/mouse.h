@@ -48,7 +48,12 @@ class Mouse final : public Device {
     /// `placed`.
     void look(const Camera& camera, ivec2 size) noexcept;
 
-    DeviceSpec spec() const override { return {.name = "mouse"}; }
+    /// It has no motor that gets warm.
+    DeviceSpec spec() const override {
+        DeviceSpec spec{.name = "mouse"};
+        spec.lasting_force = spec.peak_force;
+        return spec;
+    }
     void open() override;
     bool read(double now, DeviceState& state) noexcept override;
     bool write(const Wrench&) noexcept override { return true; }
