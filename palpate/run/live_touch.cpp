@@ -32,6 +32,7 @@ LiveTouch::LiveTouch(Experiment& experiment, std::vector<FeltHand*> hands, Exper
     : experiment_(experiment),
       beside_(beside),
       hands_(std::move(hands)),
+      grasps_(hands_.size()),
       near_(hands_.size()),
       loads_(hands_.size(), dvec3(0)) {
     thread_ = std::thread([this] { run(); });
@@ -50,6 +51,12 @@ LiveTouch::~LiveTouch() {
 void LiveTouch::set(const Interaction& besides) {
     besides_ = besides;
     besides_age_ = 0;
+}
+
+void LiveTouch::grasp(std::size_t hand, std::vector<BodyPush> pulls, vec3 at) {
+    if (grasps_[hand].pulls.empty()) grasps_[hand].last = at;
+    grasps_[hand].pulls = std::move(pulls);
+    grasps_[hand].at = at;
 }
 
 void LiveTouch::go_on() {
@@ -108,7 +115,7 @@ bool LiveTouch::advance(int slices) {
     const double start = now(), seconds = slices * slice_seconds;
     const std::size_t bodies = experiment_.models().models.size();
     Interaction hands = as_of(besides_, besides_age_);
-    const std::size_t first = hands.presses.size();
+    const std::size_t first = hands.presses.size(), first_pull = hands.pulls.size();
     if (std::exchange(shapes_, experiment_.shapes()) != shapes_)
         for (NearSkins& near : near_) near.forget();
     for (std::size_t h = 0; h < hands_.size(); ++h) {
@@ -116,13 +123,24 @@ bool LiveTouch::advance(int slices) {
         const std::vector<Skin>& skins =
             near_[h].at(experiment_.play(), experiment_.models(), hands_[h]->place(), reach);
         if (near_[h].chose()) hands_[h]->remember(near_[h].before());
-        hands_[h]->feel(skins, start, reach, {.surfaces = bodies, .load = loads_[h]});
+        hands_[h]->feel(skins, start, reach,
+                        {.surfaces = bodies, .load = loads_[h], .grasped = !grasps_[h].pulls.empty()});
         hands.presses.push_back(hands_[h]->press(seconds, bodies));
+        const vec3 place(hands_[h]->felt().pose.place), last = std::exchange(grasps_[h].last, place);
+        for (BodyPush pull : grasps_[h].pulls) {
+            pull.push.to += last - grasps_[h].at;
+            pull.push.velocity = (place - last) / float(seconds);
+            hands.pulls.push_back(pull);
+        }
     }
     const bool goes_well = experiment_.advance(hands, slices);
     if (beside_ && beside_->trouble().empty()) beside_->advance(hands, slices);
-    const std::vector<dvec3>& felt = experiment_.play().interaction_forces().presses;
-    for (std::size_t h = 0; h < hands_.size(); ++h) loads_[h] = goes_well ? felt[first + h] : dvec3(0);
+    const InteractionForces& felt = experiment_.play().interaction_forces();
+    for (std::size_t h = 0, pull = first_pull; h < hands_.size(); ++h) {
+        loads_[h] = goes_well ? felt.presses[first + h] : dvec3(0);
+        for (std::size_t i = 0; goes_well && i < grasps_[h].pulls.size(); ++i)
+            loads_[h] += felt.pulls[pull++];
+    }
     besides_age_ += seconds;
     done_ += slices;
     lengths_.add(seconds);

@@ -27,6 +27,10 @@ class LiveTouch {
     /// What else acts from now on; what of it moves does so for a frame, and then stays.
     void set(const Interaction& besides);
 
+    /// Lets a hand pull at nodes, and feel that: by these springs when its place is `at`, and they move with
+    /// it. Without pulls it lets go.
+    void grasp(std::size_t hand, std::vector<BodyPush> pulls, vec3 at = vec3(0));
+
     /// Begins to advance on a thread of its own. Until hold_still(), nobody else may use the experiments or
     /// the hands. Throws Error if the bodies are on a GPU, whose context belongs to one thread.
     void go_on();
@@ -52,6 +56,11 @@ class LiveTouch {
     Experiment& experiment_;
     Experiment* const beside_;
     const std::vector<FeltHand*> hands_;
+    struct Grasp {
+        std::vector<BodyPush> pulls;
+        vec3 at = vec3(0), last = vec3(0);  // m, where the hand was when it began, and in the last slice
+    };
+    std::vector<Grasp> grasps_;
     std::vector<NearSkins> near_;  // what each may touch
     Experiment::Shapes shapes_;    // of those
     std::vector<dvec3> loads_;     // N, on the hands, in the last slice

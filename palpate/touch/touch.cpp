@@ -261,7 +261,8 @@ bool Touch::touches_simulated() const {
 
 bool Touch::feels_load(double now) const {
     constexpr double oldest = 0.02;  // s
-    return safety_.part() > 0 && (is_fresh_ || touches_simulated()) &&
+    return safety_.part() > 0 &&
+           (is_fresh_ || touches_simulated() || surroundings_.shown().simulated.grasped) &&
            now - surroundings_.shown().patch.time() <= oldest;
 }
 

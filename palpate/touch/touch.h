@@ -36,6 +36,7 @@ struct Simulated {
     /// N, on the hand, when they were where the patch shows them. They were pressed with Felt::part of the
     /// stiffness, so that the ramp does not weaken it once more.
     dvec3 load = dvec3(0);
+    bool grasped = false;  // the hand holds one of them: it feels the load wherever it is
 };
 
 /// The state of a touch at its last tick.
@@ -86,7 +87,7 @@ class Touch {
 
     /// Sets what the hand can touch from now on. Call it whenever surfaces have moved; once if they do not
     /// move. Simulated surfaces are felt by their load and keep no dents. The load acts while the tip touches
-    /// one of them, and in the first tick of a patch, but no longer than 20 ms after the patch's time. While
+    /// or grasps one of them, and in the first tick of a patch, but no longer than 20 ms after the patch's time. While
     /// Safety waits for a small force, what is wanted is as of surfaces that stand still. Throws Error if
     /// there are more surfaces than feels.
     void feel(Patch patch, Simulated simulated = {});

@@ -39,13 +39,22 @@ Hold Hold::pulling(const Experiment& experiment, const Hit& hit, float radius) {
     return hold;
 }
 
+std::vector<BodyPush> Hold::pulls_at(vec3 place) const {
+    std::vector<BodyPush> pulls;
+    for (const Thread& thread : threads_)
+        pulls.push_back({body_, {thread.node, place + thread.offset, vec3(0), thread.stiffness}});
+    return pulls;
+}
+
 void Hold::add_to(Interaction& hands) {
     const vec3 wish = target_ - place_;
     const float most = fastest_ * float(frame_seconds), length = glm::length(wish);
     const vec3 step = length > most ? wish * (most / length) : wish;
     const vec3 velocity = step / float(frame_seconds);
-    for (const Thread& thread : threads_)
-        hands.pulls.push_back({body_, {thread.node, place_ + thread.offset, velocity, thread.stiffness}});
+    for (BodyPush pull : pulls_at(place_)) {
+        pull.push.velocity = velocity;
+        hands.pulls.push_back(pull);
+    }
     place_ += step;
 }
 
@@ -111,13 +120,12 @@ void Holds::follow(const Experiment& experiment, const std::optional<Felt>& felt
     const bool touches = felt->surface >= 0 && std::size_t(felt->surface) < experiment.models().models.size();
     if (!device_ && touches)
         device_ = Hold::pulling(experiment, {.surface = std::size_t(felt->surface), .place = place}, tip);
-    if (device_) device_->go_to(place);
+    if (device_) device_->put(place);
 }
 
 void Holds::add_to(Interaction& hands) {
     for (Hold& hold : left_) hold.add_to(hands);
     if (own_) own_->add_to(hands);
-    if (device_) device_->add_to(hands);
 }
 
 std::vector<Arrow> Holds::arrows(const InteractionForces& pushes) const {

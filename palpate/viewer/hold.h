@@ -19,6 +19,11 @@ class Hold {
     vec3 place() const { return place_; }  // m, of the hand
     std::size_t body() const { return body_; }
 
+    /// It is there at once.
+    void put(vec3 place) { place_ = target_ = place; }
+    /// Its springs while it is there.
+    std::vector<BodyPush> pulls_at(vec3 place) const;
+
     /// Sets its target. It moves there no faster than a person would.
     void go_to(vec3 place) { target_ = place; }
     vec3 target() const { return target_; }
@@ -78,8 +83,9 @@ class Holds {
     /// Lets a device other than a mouse pull: it grasps what it touches, as long as its first button is
     /// pressed. Without `felt` it does not.
     void follow(const Experiment& experiment, const std::optional<Felt>& felt, float tip);
+    const std::optional<Hold>& of_device() const { return device_; }
 
-    /// Adds their actions in the next frame.
+    /// Adds their actions in the next frame, without the device's.
     void add_to(Interaction& hands);
 
     std::vector<Arrow> arrows(const InteractionForces& pushes) const;

@@ -128,12 +128,20 @@ Interaction Viewer::hands() {
     return hands;
 }
 
+void Viewer::hand_over_to(LiveTouch& live) {
+    live.set(hands());
+    if (const std::optional<Hold>& hold = holds_.of_device())
+        live.grasp(0, hold->pulls_at(hold->place()), hold->place());
+    else
+        live.grasp(0, {});
+}
+
 // A film shows every frame of the scene, so it does not go on by itself.
 void Viewer::go_on() {
     LiveTouch* live = feeling_.live(session_, may_be_live());
     if (!live || filming() || on_gpu(experiment()->models().simulation.backend)) return;
     message_.attempt([&] {
-        live->set(hands());
+        hand_over_to(*live);
         live->go_on();
         went_on_ = true;
     });
@@ -150,7 +158,7 @@ void Viewer::one_frame() {
     bool goes_on = false;
     const bool done = message_.attempt([&] {
         if (LiveTouch* live = feeling_.live(session_, !replaying())) {
-            live->set(hands());
+            hand_over_to(*live);
             live->advance();
             goes_on = true;
         } else {

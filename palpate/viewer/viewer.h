@@ -115,6 +115,7 @@ class Viewer {
     void alter(const std::function<void()>& how, const std::string& said = {});
     void one_frame();
     Interaction hands();
+    void hand_over_to(LiveTouch& live);
     Traces traces() const;
 
     Message message_;

@@ -119,6 +119,20 @@ TEST(LiveTouch, ABodyThatBlowsUpPushesNobody) {
     EXPECT_TRUE(wait_for(live, [&] { return one->felt().part == 1 && one->felt().force.y > 0.1f; }));
 }
 
+// What it grasps it pulls along, and feels that, though it touches nothing.
+TEST(LiveTouch, AHandPullsWhatItGrasps) {
+    Experiment experiment = block();
+    const auto one = hand(-0.03);  // it goes up
+    LiveTouch live(experiment, {one.get()});
+    const std::size_t node = 11 * 7 * 5 + 11 * 6 + 5;  // in the middle of the block's top
+    const vec3 top = experiment.play().nodes(0).positions[node];
+    live.grasp(0, {{0, {int(node), top, vec3(0), 3}}}, over_block);
+    EXPECT_TRUE(wait_for(live, [&] { return one->felt().force.y < -0.02f; }));
+    EXPECT_GT(experiment.play().nodes(0).positions[node].y, top.y + 1e-4f);
+    live.grasp(0, {});
+    EXPECT_TRUE(wait_for(live, [&] { return one->felt().force == vec3(0); }));
+}
+
 // Of bodies that move, what a hand may touch is all there, where it is, with its own number.
 TEST(NearSkins, HoldAllThatIsNear) {
     Experiment experiment = block();

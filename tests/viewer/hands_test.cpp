@@ -422,7 +422,7 @@ TEST_F(ViewerTest, ADevicesButtonGrasps) {
     felt.pose.place.y = 0.06;
     holds.follow(*viewer.experiment(), felt, 0.01f);
     ASSERT_EQ(holds.all().size(), 1u);
-    EXPECT_EQ(holds.all()[0].target().y, 0.06f);
+    EXPECT_EQ(holds.all()[0].place().y, 0.06f);
     felt.buttons = 0;
     holds.follow(*viewer.experiment(), felt, 0.01f);
     EXPECT_TRUE(holds.all().empty());
