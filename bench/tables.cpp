@@ -1,6 +1,8 @@
 // Prints the tables of docs/results.md that compare measurements with theory:
-//   palpate-tables [TABLE...]     orders, stability, waves, cantilever, energy, dents, walls, mappings [all]
-//   palpate-tables --plot FILE    draws the map of walls as SVG
+//   palpate-tables [TABLE...]           orders, stability, waves, cantilever, energy, dents, walls, mappings,
+//                                       rest, swings, touches, nodules, momentum [all]
+//   palpate-tables --plot FILE [PLOT]   draws as SVG the map of walls, that of touches, or nodules [walls]
+#include "bench/felt.h"
 #include "bench/studies.h"
 #include "bench/walls.h"
 #include "palpate/base/error.h"
@@ -12,6 +14,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -123,6 +127,98 @@ void walls() {
         }
 }
 
+// ---- a hand on a simulated body ----
+
+constexpr double slices[] = {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 1000};  // s
+constexpr double mapped_slices[] = {1.0 / 60, 1.0 / 240, 1.0 / 1000};
+
+std::string fraction(double slice) { return fmt::format("1/{:.0f}", 1 / slice); }
+
+void rest() {
+    const FeltBlock block;
+    const double depth = 0.005, still = pressed_at_rest(block, {&depth, 1})[0];
+    fmt::print("At rest the reference in double is pushed back with {:.4f} N.\n\n", still);
+    fmt::print("| slice, s | 500 ticks a second | 1000 | 2000 |\n| --- | --- | --- | --- |\n");
+    for (double slice : slices) {
+        fmt::print("| {} |", fraction(slice));
+        for (double rate : {500.0, 1000.0, 2000.0})
+            fmt::print(" {:+.3f} % |", 100 * (felt_at_rest(block, depth, {slice, rate}) / still - 1));
+        fmt::print("\n");
+    }
+}
+
+void swings() {
+    fmt::print(
+        "| slice, s | 1 Hz: amplitude | phase | 2 Hz: amplitude | phase |\n| --- | --- | --- | --- | --- "
+        "|\n");
+    std::vector<FeltClock> clocks;
+    for (double slice : slices) clocks.push_back({.slice = slice});
+    const auto slow = felt_swings({}, 1, clocks), fast = felt_swings({}, 2, clocks);
+    for (std::size_t c = 0; c < clocks.size(); ++c)
+        fmt::print("| {} | {:.3f} | {:+.1f}° | {:.3f} | {:+.1f}° |\n", fraction(clocks[c].slice),
+                   slow[c].amplitude, -slow[c].late, fast[c].amplitude, -fast[c].late);
+}
+
+void touches() {
+    fmt::print("| slice, s | rigid: Colgate and Schenkel, N/m | linear |\n| --- | --- | --- |\n");
+    for (double slice : mapped_slices)
+        fmt::print("| {} | {:.0f} | {:.0f} |\n", fraction(slice), stiffest_passive(FeltHold{0, slice}),
+                   stiffest_linear(FeltHold{0, slice}));
+    fmt::print("\n| Young's modulus, kPa |");
+    for (double slice : mapped_slices) fmt::print(" {} s: measured, N/m | linear |", fraction(slice));
+    fmt::print("\n| --- | --- | --- | --- | --- | --- | --- |\n");
+    auto print = [](double stiffness) {
+        if (stiffness < StiffestTouch::most)
+            fmt::print(" {:.0f} |", stiffness);
+        else
+            fmt::print(" any |");
+    };
+    for (double kilo : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 300.0, 1000.0}) {
+        fmt::print("| {} |", kilo);
+        for (double slice : mapped_slices) {
+            const StiffestTouch found = stiffest_touch({1000 * kilo, slice});
+            print(found.measured);
+            print(found.linear);
+        }
+        fmt::print("\n");
+        std::fflush(stdout);
+    }
+}
+
+constexpr double stroked = 0.003;  // m, how deep
+constexpr double nodule_depths[] = {0.005, 0.010, 0.015};
+
+FeltStroke stroke_over(std::optional<double> nodule, double spacing = palpated.spacing) {
+    FeltBlock block = palpated;
+    block.spacing = spacing;
+    if (nodule) block.nodule = Nodule{.depth = *nodule};
+    return felt_stroke(block, stroked);
+}
+
+void nodules() {
+    fmt::print(
+        "| cells, mm | without, N | over it at 5 mm | at 10 mm | at 15 mm |\n| --- | --- | --- | --- | --- "
+        "|\n");
+    for (double spacing : {0.004, 0.003, 0.002}) {
+        const FeltStroke without = stroke_over({}, spacing);
+        const double plain = without.forces[without.forces.size() / 2];
+        fmt::print("| {:.0f} | {:.4f} |", 1000 * spacing, plain);
+        for (double depth : nodule_depths)
+            fmt::print(" {:+.1f} % |", 100 * excess(stroke_over(depth, spacing), without) / plain);
+        fmt::print("\n");
+        std::fflush(stdout);
+    }
+}
+
+void momentum() {
+    fmt::print("| slice, s | given, mN s | felt | less |\n| --- | --- | --- | --- |\n");
+    for (double slice : slices) {
+        const GivenAndFelt both = momentum_of_a_free_block({.slice = slice});
+        fmt::print("| {} | {:.3f} | {:.3f} | {:.1f} % |\n", fraction(slice), 1000 * both.given,
+                   1000 * both.felt, 100 * (1 - both.felt / both.given));
+    }
+}
+
 // The graph of a function from 0 to `most`.
 Curve curve(std::string name, double most, int parts, const std::function<double(double)>& height) {
     Curve drawn{std::move(name), {}, {}};
@@ -156,15 +252,61 @@ void draw_walls(const std::filesystem::path& path) {
     write_plot("The stiffest wall on which a hand comes to rest", {whole, near}, path);
 }
 
+void draw_touches(const std::filesystem::path& path) {
+    Panel map{"Young's modulus (kPa)", "stiffness (N/m)", {}, true};
+    for (double slice : mapped_slices) {
+        Curve measured{fraction(slice) + " s, measured", {}, {}},
+            linear{fraction(slice) + " s, linear", {}, {}};
+        for (double kilo : {30.0, 50.0, 70.0, 100.0, 150.0, 200.0, 300.0, 500.0, 1000.0}) {
+            const StiffestTouch found = stiffest_touch({1000 * kilo, slice});
+            for (auto [curve, stiffness] : {std::pair{&measured, found.measured}, {&linear, found.linear}})
+                if (stiffness < StiffestTouch::most) {
+                    curve->x.push_back(kilo);
+                    curve->y.push_back(stiffness);
+                }
+        }
+        map.curves.push_back(measured);
+        map.curves.push_back(linear);
+    }
+    map.curves.push_back({"the default", {30, 1000}, {Feel{}.stiffness, Feel{}.stiffness}});
+    write_plot("The stiffest touch of a block of tissue that comes to rest", {map}, path);
+}
+
+// One point a millimetre.
+Curve thinned(std::string name, const FeltStroke& stroke) {
+    Curve curve{std::move(name), {}, {}};
+    for (std::size_t i = 0; i < stroke.places.size(); ++i)
+        if (curve.x.empty() || 1000 * stroke.places[i] >= curve.x.back() + 1) {
+            curve.x.push_back(1000 * stroke.places[i]);
+            curve.y.push_back(stroke.forces[i]);
+        }
+    return curve;
+}
+
+void draw_nodules(const std::filesystem::path& path) {
+    Panel panel{"place (mm)", "force (N)", {thinned("no nodule", stroke_over({}))}};
+    for (double depth : nodule_depths)
+        panel.curves.push_back(thinned(fmt::format("{:.0f} mm deep", 1000 * depth), stroke_over(depth)));
+    write_plot("A stroke over a hard nodule", {panel}, path);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
     const std::vector<std::pair<std::string, void (*)()>> tables = {
-        {"orders", orders},   {"stability", stability}, {"waves", waves}, {"cantilever", cantilever},
-        {"energy", energies}, {"dents", dents},         {"walls", walls}, {"mappings", print_mappings}};
+        {"orders", orders},    {"stability", stability}, {"waves", waves},     {"cantilever", cantilever},
+        {"energy", energies},  {"dents", dents},         {"walls", walls},     {"mappings", print_mappings},
+        {"rest", rest},        {"swings", swings},       {"touches", touches}, {"nodules", nodules},
+        {"momentum", momentum}};
+    const std::map<std::string, void (*)(const std::filesystem::path&)> plots = {
+        {"walls", draw_walls}, {"touches", draw_touches}, {"nodules", draw_nodules}};
     const std::vector<std::string> wanted(arguments + 1, arguments + count);
-    if (wanted.size() == 2 && wanted[0] == "--plot") try {
-            draw_walls(wanted[1]);
+    if ((wanted.size() == 2 || wanted.size() == 3) && wanted[0] == "--plot") try {
+            const auto plot = plots.find(wanted.size() == 3 ? wanted[2] : "walls");
+            if (plot == plots.end())
+                throw Error(fmt::format("no plot \"{}\"", wanted[2]), "palpate-tables",
+                            "there are nodules, touches, walls");
+            plot->second(wanted[1]);
             return 0;
         } catch (const Error& error) {
             fmt::print(stderr, "palpate-tables: {}\n", error.what());

@@ -1,12 +1,8 @@
 #include "bench/walls.h"
 
-#include "palpate/touch/touch.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -14,21 +10,7 @@ namespace palpate::studies {
 namespace {
 
 constexpr double stiffest_tried = 1e6;  // N/m
-
-// The largest stiffness up to which a condition holds, by doubling and bisection.
-double largest(const std::function<bool(double)>& holds) {
-    double low = 0, high = 100;
-    while (high < stiffest_tried && holds(high)) {
-        low = high;
-        high *= 2;
-    }
-    if (low == 0 && !holds(1)) return 0;
-    while (high - low > 0.005 * high) {
-        const double middle = 0.5 * (low + high);
-        (holds(middle) ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-}
+constexpr double half_a_percent = 0.005;
 
 // ---- measured ----
 
@@ -39,27 +21,6 @@ constexpr double shaken_at = 1;     // s, when the equilibrium jumps
 constexpr double late = 16;         // s, when the swing is compared with that just after the jump
 constexpr double flung_off = 0.1;   // m
 
-// Only the loop, the force law and, if any, the passivity observer.
-TouchSettings without_limits(const Wall& wall, double stiffness, double most_damping) {
-    TouchSettings settings;
-    settings.feels = {{.stiffness = stiffness, .damping = wall.damping}};
-    settings.direction_filter = 0;
-    settings.safety.small_force = settings.safety.fastest_hand = std::numeric_limits<double>::max();
-    settings.safety.calm = settings.safety.ramp = 0;
-    settings.safety.jump = 1;
-    settings.safety.most_damping = most_damping;
-    return settings;
-}
-
-struct Range {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    void take(double value) {
-        least = std::min(least, value);
-        most = std::max(most, value);
-    }
-    double size() const { return most - least; }
-};
-
 // Whether the swing of a disturbed hand decays. The hand is pressed in so far that it stays in contact and
 // the damper never has to pull, unless the motion grows until that limits it. A strong damper on a
 // soft wall chatters by the encoder's steps, which is allowed as long as it is small.
@@ -67,7 +28,8 @@ bool dies_down(const Wall& wall, double stiffness, double most_damping) {
     VirtualHandSettings person = wall.hand;
     person.peak_force = person.lasting_force = 1e9f;
     person.stiffest_wall = float(4 * stiffest_tried);
-    TouchSettings settings = without_limits(wall, stiffness, most_damping);
+    const TouchSettings settings =
+        without_limits({.stiffness = stiffness, .damping = wall.damping}, most_damping);
     const double radius = settings.radius, pressed = 1 + stiffness / person.stiffness;
     auto down = [&](double deep) { return vec3(0, float(radius - deep), 0); };
     auto hand = std::make_unique<VirtualHand>(Path{{0, down(-1e-4)},
@@ -162,13 +124,40 @@ double spectral_radius(std::vector<State> columns) {
 
 }  // namespace
 
+double stiffest(double fraction, double most, const std::function<bool(double)>& holds) {
+    double low = 0, high = std::min(100.0, most);
+    while (holds(high)) {
+        low = high;
+        if (high >= most) return most;
+        high = std::min(2 * high, most);
+    }
+    if (low == 0 && !holds(1)) return 0;
+    while (high - low > fraction * high) {
+        const double middle = 0.5 * (low + high);
+        (holds(middle) ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+TouchSettings without_limits(const Feel& feel, double most_damping) {
+    TouchSettings settings;
+    settings.feels = {feel};
+    settings.direction_filter = 0;
+    settings.safety.small_force = settings.safety.fastest_hand = std::numeric_limits<double>::max();
+    settings.safety.calm = settings.safety.ramp = 0;
+    settings.safety.jump = 1;
+    settings.safety.most_damping = most_damping;
+    return settings;
+}
+
 double stiffest_measured(const Wall& wall, double most_damping) {
-    return largest([&](double k) { return dies_down(wall, k, most_damping); });
+    return stiffest(half_a_percent, stiffest_tried,
+                    [&](double k) { return dies_down(wall, k, most_damping); });
 }
 
 double stiffest_linear(const Wall& wall) {
     const auto delayed = std::size_t(wall.hand.delay * wall.rate + 1e-9) + 1;
-    return largest([&](double k) {
+    return stiffest(half_a_percent, stiffest_tried, [&](double k) {
         std::vector<State> columns;
         for (std::size_t i = 0; i < 4 + delayed; ++i) {
             State one(4 + delayed, 0);
