@@ -108,12 +108,14 @@ class Pressed {
     long ticks_ = 0;
 };
 
+TouchSettings settings_for(const FeltBlock& block) {
+    return {.radius = block.radius,
+            .feels = {{.stiffness = block.stiffness}},
+            .safety = {.most_damping = block.most_damping}};
+}
+
 Pressed scripted(const FeltBlock& block, const FeltClock& clock, const Path& path) {
-    return {made(block),
-            clock,
-            std::make_unique<Script>(path),
-            {.radius = block.radius, .feels = {{.stiffness = block.stiffness}}},
-            path.front().position};
+    return {made(block), clock, std::make_unique<Script>(path), settings_for(block), path.front().position};
 }
 
 // Down to a depth, when the force has ramped up.
@@ -203,7 +205,7 @@ FeltSwing swing_of(const FeltBlock& block, const ForceAtRest& rest, double frequ
         felt += double(now.force.y) * turn;
         at_rest += rest.at(depth_of(block, now.pose.place.y)) * turn;
     });
-    return {std::abs(felt / at_rest), -std::arg(felt / at_rest) * 180 / pi};
+    return {std::abs(felt / at_rest), std::arg(felt / at_rest) * 180 / pi};
 }
 
 }  // namespace
@@ -282,7 +284,7 @@ bool comes_to_rest(const FeltHold& hold, double stiffness) {
     arm.peak_force = arm.lasting_force = 1e9f;
     arm.stiffest_wall = float(4 * StiffestTouch::most);
     const Path plan = held_down(block, arm, jumps);
-    TouchSettings settings = without_limits({.stiffness = stiffness});
+    TouchSettings settings = without_limits({.stiffness = stiffness}, hold.most_damping);
     settings.radius = block.radius;
     settings.surprise = 1;
     Pressed pressed(made(block), {.slice = hold.slice}, std::make_unique<VirtualHand>(plan, arm), settings,
@@ -319,13 +321,15 @@ double stiffest_passive(const FeltHold& hold) { return stiffest_passive(as_wall(
 
 // ---- momentum ----
 
-GivenAndFelt momentum_of_a_free_block(const FeltClock& clock) {
-    const FeltBlock block{.size = {0.048, 0.024, 0.048}, .damping = 0, .radius = 0.01, .stiffness = 500};
+GivenAndFelt momentum_of_a_free_block(const FeltClock& clock, double most_damping) {
+    const FeltBlock block{.size = {0.048, 0.024, 0.048},
+                          .damping = 0,
+                          .radius = 0.01,
+                          .stiffness = 500,
+                          .most_damping = most_damping};
     const Body body = made(block, false);
     const Path path{{0, ball(block, -0.001)}, {0.2, ball(block, -0.001)}, {1.2, ball(block, 0.05)}};
-    Pressed pressed(body, clock, std::make_unique<Script>(path),
-                    {.radius = block.radius, .feels = {{.stiffness = block.stiffness}}},
-                    path.front().position);
+    Pressed pressed(body, clock, std::make_unique<Script>(path), settings_for(block), path.front().position);
     pressed.go_on(1.2);
     GivenAndFelt both{};
     for (Push push; pressed.hand().touch().next(push);) both.felt -= push.impulse.y;

@@ -3,6 +3,7 @@
 #include "palpate/body/feel.h"
 #include "palpate/body/simulation.h"
 #include "palpate/touch/devices/virtual_hand.h"
+#include "palpate/touch/safety.h"
 
 #include <optional>
 #include <span>
@@ -29,6 +30,7 @@ struct FeltBlock {
     double damping = 10;               // 1/s, of velocities
     double radius = 0.012;             // m, of the ball
     double stiffness = Feel{}.stiffness;
+    double most_damping = SafetySettings{}.most_damping;  // N·s/m, that the passivity observer may add
     std::optional<Nodule> nodule = {};
 };
 
@@ -48,7 +50,7 @@ double felt_at_rest(const FeltBlock& block, double depth, const FeltClock& clock
 /// passes: their fundamentals.
 struct FeltSwing {
     double amplitude;  // over that of the force at rest
-    double late;       // degrees, how far the felt force is behind
+    double ahead;      // degrees, of the force at rest
 };
 std::vector<FeltSwing> felt_swings(const FeltBlock& block, double frequency,
                                    std::span<const FeltClock> clocks);
@@ -68,8 +70,9 @@ double excess(const FeltStroke& with, const FeltStroke& without);
 
 /// The hand of an arm that presses a block, and how stiff the touch may be before its force begins to swing.
 struct FeltHold {
-    double youngs_modulus;  // Pa, of the block
-    double slice;           // s, of the world
+    double youngs_modulus;    // Pa, of the block
+    double slice;             // s, of the world
+    double most_damping = 0;  // N·s/m, as above; there are no other safety limits
     VirtualHandSettings hand = {.delay = 0.001};
 };
 
@@ -94,6 +97,7 @@ double stiffest_passive(const FeltHold& hold);
 struct GivenAndFelt {
     double given, felt;
 };
-GivenAndFelt momentum_of_a_free_block(const FeltClock& clock = {});
+GivenAndFelt momentum_of_a_free_block(const FeltClock& clock,
+                                      double most_damping = SafetySettings{}.most_damping);
 
 }  // namespace palpate::studies

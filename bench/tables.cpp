@@ -149,14 +149,18 @@ void rest() {
 
 void swings() {
     fmt::print(
-        "| slice, s | 1 Hz: amplitude | phase | 2 Hz: amplitude | phase |\n| --- | --- | --- | --- | --- "
-        "|\n");
+        "| passivity control | slice, s | 1 Hz: amplitude | phase | 2 Hz: amplitude | phase |\n"
+        "| --- | --- | --- | --- | --- | --- |\n");
     std::vector<FeltClock> clocks;
     for (double slice : slices) clocks.push_back({.slice = slice});
-    const auto slow = felt_swings({}, 1, clocks), fast = felt_swings({}, 2, clocks);
-    for (std::size_t c = 0; c < clocks.size(); ++c)
-        fmt::print("| {} | {:.3f} | {:+.1f}° | {:.3f} | {:+.1f}° |\n", fraction(clocks[c].slice),
-                   slow[c].amplitude, -slow[c].late, fast[c].amplitude, -fast[c].late);
+    for (double most_damping : {SafetySettings{}.most_damping, 0.0}) {
+        const FeltBlock block{.most_damping = most_damping};
+        const auto slow = felt_swings(block, 1, clocks), fast = felt_swings(block, 2, clocks);
+        for (std::size_t c = 0; c < clocks.size(); ++c)
+            fmt::print("| {} | {} | {:.3f} | {:+.1f}° | {:.3f} | {:+.1f}° |\n",
+                       most_damping > 0 ? "on" : "off", fraction(clocks[c].slice), slow[c].amplitude,
+                       slow[c].ahead, fast[c].amplitude, fast[c].ahead);
+    }
 }
 
 void touches() {
@@ -211,12 +215,15 @@ void nodules() {
 }
 
 void momentum() {
-    fmt::print("| slice, s | given, mN s | felt | less |\n| --- | --- | --- | --- |\n");
-    for (double slice : slices) {
-        const GivenAndFelt both = momentum_of_a_free_block({.slice = slice});
-        fmt::print("| {} | {:.3f} | {:.3f} | {:.1f} % |\n", fraction(slice), 1000 * both.given,
-                   1000 * both.felt, 100 * (1 - both.felt / both.given));
-    }
+    fmt::print(
+        "| passivity control | slice, s | given, mN s | felt | less |\n| --- | --- | --- | --- | --- |\n");
+    for (double most_damping : {SafetySettings{}.most_damping, 0.0})
+        for (double slice : slices) {
+            const GivenAndFelt both = momentum_of_a_free_block({.slice = slice}, most_damping);
+            fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.2f} % |\n", most_damping > 0 ? "on" : "off",
+                       fraction(slice), 1000 * both.given, 1000 * both.felt,
+                       100 * (1 - both.felt / both.given));
+        }
 }
 
 // The graph of a function from 0 to `most`.

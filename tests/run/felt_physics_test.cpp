@@ -27,7 +27,7 @@ TEST(FeltPhysics, ASlowSwingIsFeltAsAtRest) {
     for (double frequency : {1.0, 2.0})
         for (const FeltSwing& swing : felt_swings({}, frequency, clocks)) {
             EXPECT_LE(std::abs(swing.amplitude - 1), 0.05) << frequency << " Hz";
-            EXPECT_LE(std::abs(swing.late), 5) << frequency << " Hz";
+            EXPECT_LE(std::abs(swing.ahead), 5) << frequency << " Hz";
         }
 }
 
@@ -47,12 +47,37 @@ TEST(FeltPhysics, ANoduleIsFeltTheLessTheDeeperItLies) {
     EXPECT_GE(over[2], 0.02);
 }
 
+// What is late by a slice and a tick, is so by no more.
+TEST(FeltPhysics, WithoutPassivityControlASwingIsLateByASliceAndATick) {
+    const FeltBlock block{.most_damping = 0};
+    const std::vector<FeltClock> clocks{
+        {.slice = 1.0 / 60}, {.slice = 1.0 / 120}, {.slice = 1.0 / 240}, {.slice = 1.0 / 1000}};
+    const std::vector<FeltSwing> swings = felt_swings(block, 2, clocks);
+    for (std::size_t c = 0; c < clocks.size(); ++c) {
+        const double late = clocks[c].slice + 1 / clocks[c].rate;  // s
+        EXPECT_LE(std::abs(swings[c].ahead + 360 * 2 * late), 1) << clocks[c].slice << " s";
+        EXPECT_LE(std::abs(swings[c].amplitude - 1), 0.02) << clocks[c].slice << " s";
+    }
+}
+
+// What passivity control takes from the hand, the body does not learn of.
+TEST(FeltPhysics, AFreeBodyGetsTheMomentumThatTheHandFeels) {
+    for (double slice : {1.0 / 240, 1.0 / 1000}) {
+        const GivenAndFelt with = momentum_of_a_free_block({.slice = slice}),
+                           without = momentum_of_a_free_block({.slice = slice}, 0);
+        EXPECT_GT(with.given, 0.005);
+        EXPECT_LE(std::abs(with.felt / with.given - 1), 0.1) << slice << " s";
+        EXPECT_LE(std::abs(without.felt / without.given - 1), 0.005) << slice << " s";
+    }
+}
+
 // The default stiffness is half of what is stable, or less, in slices of up to a frame.
 TEST(FeltPhysics, TwiceTheDefaultStiffnessComesToRest) {
     for (double modulus : {500.0, 5000.0, 100'000.0})
         for (double slice : {1.0 / 60, 1.0 / 240, 1.0 / 1000})
-            EXPECT_TRUE(comes_to_rest({modulus, slice}, 2 * Feel{}.stiffness))
-                << modulus << " Pa, " << slice << " s";
+            for (double most_damping : {0.0, SafetySettings{}.most_damping})
+                EXPECT_TRUE(comes_to_rest({modulus, slice, most_damping}, 2 * Feel{}.stiffness))
+                    << modulus << " Pa, " << slice << " s, " << most_damping << " N s/m";
 }
 
 TEST(FeltPhysics, ATouchIsStableUpToTheLinearBoundary) {
