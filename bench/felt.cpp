@@ -4,6 +4,7 @@
 #include "bench/walls.h"
 #include "palpate/body/hull.h"
 #include "palpate/body/lattice.h"
+#include "palpate/body/scatter.h"
 #include "palpate/body/select.h"
 #include "palpate/run/felt_hand.h"
 #include "palpate/solver/stability.h"
@@ -71,10 +72,12 @@ class Pressed {
     // Goes on to a time, and shows each tick of the hand. False if the body diverged.
     bool go_on(double until, const Watch& watch = {}) {
         while (time_ < until - 1e-9) {
+            const std::vector<BodyPush> back = give_back();
             const WorldStats stats = world_.step(
-                clock_.slice, {.press_in_slice = [&](double, double, std::span<const dvec3> reactions) {
-                    return std::vector<Press>{press(reactions, watch)};
-                }});
+                clock_.slice,
+                {.pushes = back, .press_in_slice = [&](double, double, std::span<const dvec3> reactions) {
+                     return std::vector<Press>{press(reactions, watch)};
+                 }});
             if (stats.diverged) return false;
             time_ += clock_.slice;
         }
@@ -82,11 +85,40 @@ class Pressed {
     }
 
     const Solver& solver() const { return world_.solver(0); }
-    FeltHand& hand() { return hand_; }
+
+    // N s, of all that was written to the device.
+    dvec3 felt() {
+        take_pushes();
+        return felt_;
+    }
 
  private:
+    void take_pushes() {
+        for (Push push; hand_.touch().next(push);) {
+            felt_ -= push.impulse;
+            unfelt_ += push.impulse;
+            touched_ = push;
+        }
+    }
+
+    std::vector<BodyPush> give_back() {
+        if (!(clock_.gives_back_in > 0) || !touched_) return {};
+        const dvec3 force = unfelt_ / clock_.gives_back_in;
+        unfelt_ -= clock_.slice * force;
+        std::vector<SurfacePush> corners;
+        for (int k = 0; k < 3; ++k)
+            corners.push_back({.vertex = surface_.triangles[std::size_t(touched_->triangle)][k],
+                               .force = vec3(touched_->weights[k] * force)});
+        std::vector<BodyPush> pushes;
+        for (const NodePush& push : scatter(embedding_, solver().nodes(), corners))
+            pushes.push_back({0, push});
+        return pushes;
+    }
+
     Press press(std::span<const dvec3> reactions, const Watch& watch) {
         const dvec3 load = reactions.empty() ? dvec3(0) : reactions[0] / clock_.slice;
+        take_pushes();
+        unfelt_ += clock_.slice * std::exchange(load_, load);
         const float reach = hand_.radius() + 0.02f + float(clock_.slice);
         deform(embedding_, solver().nodes(), skins_[0].positions);
         hand_.feel(skins_, time_, reach, {.surfaces = 1, .load = load});
@@ -106,6 +138,9 @@ class Pressed {
     World world_;
     double time_ = 0;
     long ticks_ = 0;
+    dvec3 load_ = dvec3(0);                      // N, that the hand was last told of
+    dvec3 felt_ = dvec3(0), unfelt_ = dvec3(0);  // N s; of all loads
+    std::optional<Push> touched_;
 };
 
 TouchSettings settings_for(const FeltBlock& block) {
@@ -287,8 +322,8 @@ bool comes_to_rest(const FeltHold& hold, double stiffness) {
     TouchSettings settings = without_limits({.stiffness = stiffness}, hold.most_damping);
     settings.radius = block.radius;
     settings.surprise = 1;
-    Pressed pressed(made(block), {.slice = hold.slice}, std::make_unique<VirtualHand>(plan, arm), settings,
-                    plan.front().position);
+    Pressed pressed(made(block), {.slice = hold.slice, .gives_back_in = hold.gives_back_in},
+                    std::make_unique<VirtualHand>(plan, arm), settings, plan.front().position);
     Range first, last;
     const bool whole = pressed.go_on(late + 1, [&](double time, const Felt& felt) {
         if (time >= jumps && time < jumps + 1) first.take(double(felt.force.y));
@@ -331,8 +366,7 @@ GivenAndFelt momentum_of_a_free_block(const FeltClock& clock, double most_dampin
     const Path path{{0, ball(block, -0.001)}, {0.2, ball(block, -0.001)}, {1.2, ball(block, 0.05)}};
     Pressed pressed(body, clock, std::make_unique<Script>(path), settings_for(block), path.front().position);
     pressed.go_on(1.2);
-    GivenAndFelt both{};
-    for (Push push; pressed.hand().touch().next(push);) both.felt -= push.impulse.y;
+    GivenAndFelt both{0, pressed.felt().y};
     const State state = pressed.solver().state();
     for (std::size_t i = 0; i < body.count(); ++i)
         both.given -= state.velocities[i].y / double(body.inverse_mass[i]);

@@ -38,6 +38,9 @@ struct FeltBlock {
 struct FeltClock {
     double slice = slice_seconds;  // s
     double rate = 1000;            // Hz
+    /// s: in which the body gets back, as a force on the place that was touched last, what the safety limits
+    /// took of a load from the hand; 0: never, as in scenes.
+    double gives_back_in = 0;
 };
 
 /// The force on a ball at each depth in turn, N, when the block has come to rest; on the reference in double.
@@ -70,9 +73,10 @@ double excess(const FeltStroke& with, const FeltStroke& without);
 
 /// The hand of an arm that presses a block, and how stiff the touch may be before its force begins to swing.
 struct FeltHold {
-    double youngs_modulus;    // Pa, of the block
-    double slice;             // s, of the world
-    double most_damping = 0;  // N·s/m, as above; there are no other safety limits
+    double youngs_modulus;     // Pa, of the block
+    double slice;              // s, of the world
+    double most_damping = 0;   // N·s/m, as above; there are no other safety limits
+    double gives_back_in = 0;  // s, as of a FeltClock
     VirtualHandSettings hand = {.delay = 0.001};
 };
 

@@ -147,19 +147,29 @@ void rest() {
     }
 }
 
+// What becomes of the force that passivity control takes from a hand.
+struct Control {
+    const char* name;
+    double most_damping, gives_back_in;  // N·s/m; s
+};
+constexpr Control controls[] = {{"on", SafetySettings{}.most_damping, 0},
+                                {"off", 0, 0},
+                                {"on, given back in 50 ms", SafetySettings{}.most_damping, 0.05}};
+
 void swings() {
     fmt::print(
         "| passivity control | slice, s | 1 Hz: amplitude | phase | 2 Hz: amplitude | phase |\n"
         "| --- | --- | --- | --- | --- | --- |\n");
-    std::vector<FeltClock> clocks;
-    for (double slice : slices) clocks.push_back({.slice = slice});
-    for (double most_damping : {SafetySettings{}.most_damping, 0.0}) {
-        const FeltBlock block{.most_damping = most_damping};
+    for (const Control& control : controls) {
+        std::vector<FeltClock> clocks;
+        for (double slice : slices)
+            clocks.push_back({.slice = slice, .gives_back_in = control.gives_back_in});
+        const FeltBlock block{.most_damping = control.most_damping};
         const auto slow = felt_swings(block, 1, clocks), fast = felt_swings(block, 2, clocks);
         for (std::size_t c = 0; c < clocks.size(); ++c)
-            fmt::print("| {} | {} | {:.3f} | {:+.1f}° | {:.3f} | {:+.1f}° |\n",
-                       most_damping > 0 ? "on" : "off", fraction(clocks[c].slice), slow[c].amplitude,
-                       slow[c].ahead, fast[c].amplitude, fast[c].ahead);
+            fmt::print("| {} | {} | {:.3f} | {:+.1f}° | {:.3f} | {:+.1f}° |\n", control.name,
+                       fraction(clocks[c].slice), slow[c].amplitude, slow[c].ahead, fast[c].amplitude,
+                       fast[c].ahead);
     }
 }
 
@@ -217,12 +227,12 @@ void nodules() {
 void momentum() {
     fmt::print(
         "| passivity control | slice, s | given, mN s | felt | less |\n| --- | --- | --- | --- | --- |\n");
-    for (double most_damping : {SafetySettings{}.most_damping, 0.0})
+    for (const Control& control : controls)
         for (double slice : slices) {
-            const GivenAndFelt both = momentum_of_a_free_block({.slice = slice}, most_damping);
-            fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.2f} % |\n", most_damping > 0 ? "on" : "off",
-                       fraction(slice), 1000 * both.given, 1000 * both.felt,
-                       100 * (1 - both.felt / both.given));
+            const GivenAndFelt both = momentum_of_a_free_block(
+                {.slice = slice, .gives_back_in = control.gives_back_in}, control.most_damping);
+            fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.3f} % |\n", control.name, fraction(slice),
+                       1000 * both.given, 1000 * both.felt, 100 * (1 - both.felt / both.given));
         }
 }
 

@@ -71,13 +71,25 @@ TEST(FeltPhysics, AFreeBodyGetsTheMomentumThatTheHandFeels) {
     }
 }
 
-// The default stiffness is half of what is stable, or less, in slices of up to a frame.
+TEST(FeltPhysics, WhatTheHandDidNotFeelCanBeGivenBack) {
+    for (double slice : {1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 1000}) {
+        const GivenAndFelt both = momentum_of_a_free_block({.slice = slice, .gives_back_in = 0.05});
+        EXPECT_GT(both.given, 0.005);
+        EXPECT_LE(std::abs(both.felt / both.given - 1), 1e-4) << slice << " s";
+    }
+}
+
+// The default stiffness is half of what is stable, or less, in slices of up to a frame; with passivity
+// control or without, and where the body gets back what that takes.
 TEST(FeltPhysics, TwiceTheDefaultStiffnessComesToRest) {
+    const double control = SafetySettings{}.most_damping;
     for (double modulus : {500.0, 5000.0, 100'000.0})
         for (double slice : {1.0 / 60, 1.0 / 240, 1.0 / 1000})
-            for (double most_damping : {0.0, SafetySettings{}.most_damping})
-                EXPECT_TRUE(comes_to_rest({modulus, slice, most_damping}, 2 * Feel{}.stiffness))
-                    << modulus << " Pa, " << slice << " s, " << most_damping << " N s/m";
+            for (const FeltHold& hold :
+                 {FeltHold{modulus, slice}, {modulus, slice, control}, {modulus, slice, control, 0.05}})
+                EXPECT_TRUE(comes_to_rest(hold, 2 * Feel{}.stiffness))
+                    << modulus << " Pa, " << slice << " s, " << hold.most_damping << " N s/m, "
+                    << hold.gives_back_in << " s";
 }
 
 TEST(FeltPhysics, ATouchIsStableUpToTheLinearBoundary) {
