@@ -67,9 +67,10 @@ float largest_move(std::span<const vec3> from, std::span<const vec3> to) {
 }
 
 // m: of all boxes along all axes.
-double total_size(const std::vector<Tree::Node>& nodes) {
+template <class Box>
+double total_size(const std::vector<Box>& boxes) {
     vec3 total(0);
-    for (const Tree::Node& node : nodes) total += node.high - node.low;
+    for (const Box& box : boxes) total += box.high - box.low;
     return double(total.x) + total.y + total.z;
 }
 
@@ -104,7 +105,7 @@ Patch::Patch(std::shared_ptr<const Faces> faces, std::span<const Touchable> surf
       time_(time),
       surfaces_(surfaces.size()),
       faces_(std::move(faces)),
-      nodes_(faces_->nodes),
+      boxes_(faces_->nodes.size()),
       positions_(faces_->vertices.size()),
       velocities_(faces_->vertices.size()) {
     gather(surfaces);
@@ -163,17 +164,24 @@ void Patch::gather(std::span<const Touchable> surfaces) {
 }
 
 void Patch::enclose() {
-    for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
-        Tree::Node& node = nodes_[i];
-        Bounds box;
+    const std::vector<Tree::Node>& nodes = faces_->nodes;
+    for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
+        const Tree::Node& node = nodes[i];
         if (node.second == 0) {
+            Bounds box, speeds;
             for (Index face = node.first; face < node.first + node.count; ++face)
-                for (int k = 0; k < 3; ++k) box.include(positions_[faces_->triangles[face][k]]);
+                for (int k = 0; k < 3; ++k) {
+                    const unsigned corner = faces_->triangles[face][k];
+                    box.include(positions_[corner]);
+                    speeds.include(velocities_[corner]);
+                }
+            boxes_[i] = {box.low, box.high, speeds.low, speeds.high};
         } else {
-            const Tree::Node &first = nodes_[i + 1], &second = nodes_[node.second];
-            box = {glm::min(first.low, second.low), glm::max(first.high, second.high)};
+            const MovingBox &first = boxes_[i + 1], &second = boxes_[node.second];
+            boxes_[i] = {glm::min(first.low, second.low), glm::max(first.high, second.high),
+                         glm::min(first.low_speed, second.low_speed),
+                         glm::max(first.high_speed, second.high_speed)};
         }
-        node.low = box.low, node.high = box.high;
     }
 }
 
@@ -239,7 +247,7 @@ bool PatchMaker::knows(std::span<const Touchable> surfaces, vec3 centre, float r
 // Whether all positions are finite and the boxes are not much larger than they need be.
 bool PatchMaker::is_sound(const Patch& patch) const {
     return std::all_of(patch.positions_.begin(), patch.positions_.end(), is_finite) &&
-           total_size(patch.nodes_) <= 2 * size_;
+           total_size(patch.boxes_) <= 2 * size_;
 }
 
 void PatchMaker::look(std::span<const Touchable> surfaces, vec3 centre, float radius) {

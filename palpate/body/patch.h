@@ -70,10 +70,9 @@ class Patch {
     /// for some that are slightly farther away.
     template <class Act>
     void for_each_near(dvec3 point, double reach, double time, const Act& act) const {
-        const double age = age_at(time);
-        const float far = float(reach + double(fastest_) * age) + 1e-6f +
-                          3e-7f * float(glm::length(point));  // for rounding the point to floats
-        for_each_within(vec3(point), far * far, [&](Index face) { act(face_at(face, time)); });
+        const float far = float(reach) + 1e-6f + 3e-7f * float(glm::length(point));  // for rounding to floats
+        for_each_within(vec3(point), far * far, float(age_at(time)),
+                        [&](Index face) { act(face_at(face, time)); });
     }
 
  private:
@@ -96,6 +95,12 @@ class Patch {
         std::vector<Vertex> vertices;
     };
 
+    // The bounds of a node's vertices, which move.
+    struct MovingBox {
+        vec3 low, high;              // m, at first
+        vec3 low_speed, high_speed;  // m/s, along each axis
+    };
+
     // Of those with finite positions.
     static std::shared_ptr<const Faces> faces_near(std::span<const Touchable> surfaces, vec3 centre,
                                                    float radius);
@@ -108,16 +113,18 @@ class Patch {
     Face face_at(Index face, double time) const;
 
     template <class Act>
-    void for_each_within(vec3 point, float squared, const Act& act) const {
-        if (nodes_.empty()) return;
+    void for_each_within(vec3 point, float squared, float age, const Act& act) const {
+        if (boxes_.empty()) return;
         std::array<Index, 64> waiting;  // a tree that is split at medians is never so deep
         std::size_t count = 0;
         waiting[count++] = 0;
         while (count > 0) {
             const Index here = waiting[--count];
-            const Tree::Node& node = nodes_[here];
-            const vec3 off = glm::max(glm::max(node.low - point, point - node.high), vec3(0));
+            const MovingBox& box = boxes_[here];
+            const vec3 low = box.low + age * box.low_speed, high = box.high + age * box.high_speed;
+            const vec3 off = glm::max(glm::max(low - point, point - high), vec3(0));
             if (glm::dot(off, off) > squared) continue;
+            const Tree::Node& node = faces_->nodes[here];
             if (node.second == 0) {
                 for (Index face = node.first; face < node.first + node.count; ++face) act(face);
                 continue;
@@ -133,7 +140,7 @@ class Patch {
     float fastest_ = 0;  // m/s
     std::size_t surfaces_ = 0;
     std::shared_ptr<const Faces> faces_;
-    std::vector<Tree::Node> nodes_;             // those of the faces, with present boxes
+    std::vector<MovingBox> boxes_;              // of the faces' nodes
     std::vector<vec3> positions_, velocities_;  // of the faces' vertices
 };
 

@@ -39,8 +39,7 @@ Nearest nearest(const Patch::Face& face, dvec3 centre) {
     return found;
 }
 
-// A face with its plane and its bounding disc in that plane, for the broad phase: they rule out most faces
-// quickly.
+// A face with its plane and its bounding disc in that plane: they rule out most faces quickly.
 struct BoundedFace {
     Patch::Face face;
     dvec3 up;  // unit; zero if the face is degenerate, so that every point is at its height
@@ -55,17 +54,17 @@ struct BoundedFace {
         up *= square > 0 ? 1 / std::sqrt(square) : 0;
         level = glm::dot(up, a);
         middle = (a + b + c) / 3.0;
-        size = std::max({glm::distance(a, middle), glm::distance(b, middle), glm::distance(c, middle)});
+        const auto squared = [this](dvec3 corner) { return glm::dot(corner - middle, corner - middle); };
+        size = std::sqrt(std::max({squared(a), squared(b), squared(c)}));
     }
 
     double height(dvec3 point) const { return glm::dot(up, point) - level; }  // m
 
-    // Whether a ball at that height over the plane can touch the disc.
-    bool may_touch(dvec3 centre, double high, double radius) const {
-        const dvec3 off = centre - middle;
-        const double aside = glm::dot(off, off) - high * high;
-        const double most = size + std::sqrt(std::max(radius * radius - high * high, 0.0));
-        return aside <= most * most * (1 + 1e-9);
+    // m, from a point at that height over the plane to the disc: no point of the face is nearer.
+    double distance(dvec3 point, double high) const {
+        const dvec3 off = point - middle;
+        const double aside = std::sqrt(std::max(glm::dot(off, off) - high * high, 0.0)) - size;
+        return (1 - 1e-9) * (aside > 0 ? std::sqrt(high * high + aside * aside) : std::abs(high));
     }
 };
 
@@ -123,7 +122,7 @@ Touching touching(Near& near, dvec3 centre, double radius, dvec3 wanted) {
     near.for_each(centre, reach, [&](const BoundedFace& flat) {
         const Patch::Face& face = flat.face;
         const double high = flat.height(centre);
-        if (!may_stop(flat, high, high, reach) || !flat.may_touch(centre, high, reach)) return;
+        if (!may_stop(flat, high, high, reach) || flat.distance(centre, high) > reach) return;
         const Nearest at = nearest(face, centre);
         if (at.distance > reach) return;
         const dvec3 velocity = at.weights.x * face.velocities[0] + at.weights.y * face.velocities[1] +
@@ -218,47 +217,71 @@ double part_within(dvec3 from, dvec3 way, dvec3 centre, double radius) {
 
 }  // namespace
 
-// A cache of the faces near the ball at this tick, since there are many queries about nearly the same place.
+// The faces near the ball at this tick, the nearest first, since there are many queries about nearly the same
+// place.
 class Proxy::Near {
  public:
-    Near(const Patch& patch, double time) : patch_(patch), time_(time) {}
+    static constexpr double beyond = 3e-4;  // m: how far the ball usually moves in a tick
+
+    Near(const Patch& patch, double time) : patch_(patch), time_(time) {
+        for (std::size_t i = 0; i < room; ++i) order_[i].slot = i;
+    }
 
     const Patch& patch() const { return patch_; }
 
+    // Calls act(BoundedFace) for every face that comes within `reach` of a point, and for some others.
     template <class Act>
     void for_each(dvec3 point, double reach, const Act& act) {
-        if (!holds(point, reach) && !too_many_) fetch(point, reach + beyond);
+        if (!holds(point, reach)) fetch(point, reach);
         if (!holds(point, reach))
             return patch_.for_each_near(point, reach, time_,
                                         [&](const Patch::Face& face) { act(BoundedFace(face)); });
-        for (std::size_t i = 0; i < count_; ++i) act(faces_[i]);
+        const double far = glm::distance(point, centre_) + reach;
+        for (std::size_t i = 0; i < count_ && order_[i].distance <= far; ++i) act(faces_[order_[i].slot]);
     }
 
  private:
-    static constexpr double beyond = 5e-4;  // m: how far the ball usually moves in a tick
-    static constexpr std::size_t room = 128;
+    static constexpr std::size_t room = 512;
+
+    struct Place {
+        double distance;  // m, from centre_
+        std::size_t slot;
+    };
 
     bool holds(dvec3 point, double reach) const { return glm::distance(point, centre_) + reach <= reach_; }
 
     void fetch(dvec3 point, double reach) {
         centre_ = point;
-        reach_ = reach;
+        reach_ = reach + beyond;
         count_ = 0;
-        patch_.for_each_near(point, reach, time_, [&](const Patch::Face& face) {
-            if (count_ < room)
-                faces_[count_++] = BoundedFace(face);
-            else
-                too_many_ = true;
-        });
-        if (too_many_) reach_ = -1;
+        patch_.for_each_near(point, reach_, time_, [&](const Patch::Face& face) { add(BoundedFace(face)); });
+        sort();
+    }
+
+    void add(const BoundedFace& flat) {
+        const double distance = flat.distance(centre_, flat.height(centre_));
+        if (distance > reach_) return;
+        if (count_ == room) {
+            sort();
+            count_ /= 2;
+            reach_ = std::nextafter(order_[count_].distance, 0.0);
+            return add(flat);
+        }
+        order_[count_].distance = distance;
+        faces_[order_[count_++].slot] = flat;
+    }
+
+    void sort() {
+        std::sort(order_.begin(), order_.begin() + std::ptrdiff_t(count_),
+                  [](const Place& a, const Place& b) { return a.distance < b.distance; });
     }
 
     const Patch& patch_;
     const double time_;
     dvec3 centre_ = dvec3(0);
-    double reach_ = -1;      // m; below 0 the cache is empty
-    bool too_many_ = false;  // then queries go to the patch directly
+    double reach_ = -1;  // m; below 0 nothing is known
     std::size_t count_ = 0;
+    std::array<Place, room> order_;
     std::array<BoundedFace, room> faces_;
 };
 
@@ -335,7 +358,7 @@ void Proxy::leave_penetration(Near& near) {
         dvec3 out(0);
         near.for_each(place_, radius_, [&](const BoundedFace& flat) {
             const double high = flat.height(place_);
-            if (!may_stop(flat, high, high, radius_) || !flat.may_touch(place_, high, radius_)) return;
+            if (!may_stop(flat, high, high, radius_) || flat.distance(place_, high) > radius_) return;
             const Nearest at = nearest(flat.face, place_);
             if (at.distance >= least) return;
             least = at.distance;
@@ -367,27 +390,28 @@ void Proxy::approach(Near& near, dvec3 goal) {
     }
 }
 
-// Moves along a way to the first obstacle: continuous collision detection. A long way is divided, so that
-// each piece has few faces near it.
+// Moves along a way to the first obstacle: continuous collision detection. The way is divided, so that each
+// piece has few faces near it. Pieces grow, since most ways end soon.
 void Proxy::go(Near& near, dvec3 way) {
     way *= part_within(place_, way, near.patch().centre(), near.patch().radius() - radius_ - clearance);
-    const double length = glm::length(way);
-    if (!(length > 0)) return;
     const double longest = std::max(radius_, 0.001), off = radius_ + clearance;
-    constexpr double most_pieces = 64;  // the rest is left to the next tick
-    const double pieces = std::min(std::ceil(length / longest), most_pieces);
-    way *= std::min(longest / length, 1 / pieces);
-    for (int i = 0; i < int(pieces); ++i) {
+    constexpr int most_pieces = 64;  // the rest is left to the next tick
+    double length = glm::length(way), piece = Near::beyond / 3;
+    for (int i = 0; i < most_pieces && length > 0; ++i) {
+        const dvec3 step = std::min(piece / length, 1.0) * way;
+        const dvec3 middle = place_ + 0.5 * step;
+        const double reach = 0.5 * glm::length(step) + off;
         double part = 1;
-        const dvec3 middle = place_ + 0.5 * way;
-        const double reach = 0.5 * glm::length(way) + off;
         near.for_each(middle, reach, [&](const BoundedFace& flat) {
-            if (flat.may_touch(middle, flat.height(middle), reach) &&
-                may_stop(flat, flat.height(place_), flat.height(place_ + part * way), off))
-                part = std::min(part, free_part(flat.face, place_, way, off, part));
+            if (flat.distance(middle, flat.height(middle)) <= reach &&
+                may_stop(flat, flat.height(place_), flat.height(place_ + part * step), off))
+                part = std::min(part, free_part(flat.face, place_, step, off, part));
         });
-        place_ += part * way;
+        place_ += part * step;
         if (part < 1) return;
+        way -= step;
+        length = piece < length ? glm::length(way) : 0;
+        piece = std::min(2 * piece, longest);
     }
 }
 
