@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -39,6 +40,96 @@ bool comes_near(vec3 a, vec3 b, vec3 c, vec3 centre, float radius) {
     const float size =
         std::max({glm::distance(a, middle), glm::distance(b, middle), glm::distance(c, middle)});
     return !(glm::distance(middle, centre) > radius + size);
+}
+
+// The numbers of the triangles with finite corners that may come within `radius` of `centre`.
+std::vector<int> near(const Touchable& surface, vec3 centre, float radius) {
+    const std::size_t count = surface.positions.size();
+    std::vector<std::uint8_t> outside(count);
+    for (std::size_t i = 0; i < count; ++i)
+        outside[i] = sides(surface.positions[i], centre - radius, centre + radius);
+    std::vector<int> found;
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+        const uvec3 t = surface.triangles[i];
+        if (t.x >= count || t.y >= count || t.z >= count)
+            throw Error("a triangle that refers to missing vertices", "a surface to touch",
+                        "use indices of its own positions");
+        if (outside[t.x] & outside[t.y] & outside[t.z]) continue;
+        const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
+        if (is_finite(a) && is_finite(b) && is_finite(c) && comes_near(a, b, c, centre, radius))
+            found.push_back(int(i));
+    }
+    return found;
+}
+
+// ---- a hierarchy along a Z curve ----
+
+// The place of a triangle's middle along a Z curve (its Morton code), which keeps neighbours together.
+struct OnCurve {
+    std::uint64_t code;
+    Index face;
+};
+
+constexpr int bits = 14, digit = 11;  // of a code: of each axis; at which codes are sorted at once
+
+// Puts two zeros before each of a number's bits, of which there are 16 at most.
+std::uint64_t spread(std::uint64_t number) {
+    number = (number | number << 16) & 0xff00'00ff;
+    number = (number | number << 8) & 0xf0'0f00'f00f;
+    number = (number | number << 4) & 0xc30'c30c'30c3;
+    return (number | number << 2) & 0x2492'4924'9249;
+}
+
+// Radix sort: its time grows no faster than the number of faces.
+void sort(std::vector<OnCurve>& curve) {
+    std::vector<OnCurve> other(curve.size());
+    for (int shift = 0; shift < 3 * bits; shift += digit) {
+        const auto key = [&](const OnCurve& one) { return one.code >> shift & ((1u << digit) - 1); };
+        std::array<Index, (1 << digit) + 1> place = {};
+        for (const OnCurve& one : curve) ++place[key(one) + 1];
+        for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
+        for (const OnCurve& one : curve) other[place[key(one)]++] = one;
+        curve.swap(other);
+    }
+}
+
+std::vector<OnCurve> along_curve(const std::vector<vec3>& middles) {
+    const Bounds box = bounds(middles);
+    const vec3 size = box.size();
+    constexpr float most = (1 << bits) - 1;
+    const float scale = most / std::max({size.x, size.y, size.z, std::numeric_limits<float>::min()});
+    std::vector<OnCurve> curve(middles.size());
+    for (std::size_t i = 0; i < middles.size(); ++i) {
+        std::uint64_t code = 0;
+        for (int k = 0; k < 3; ++k) {
+            const float cell =
+                scale * (middles[i][k] - box.low[k]);  // not a number, if all is infinitely wide
+            code = code << 1 | spread(std::uint64_t(std::min(std::max(0.0f, cell), most)));
+        }
+        curve[i] = {code, Index(i)};
+    }
+    sort(curve);
+    return curve;
+}
+
+// Makes the node of a range of the curve and, after it, those below. A range is divided where the first bit
+// changes that is not the same in all of its codes.
+template <class Node>
+void split(std::span<const OnCurve> curve, Index first, Index count, std::vector<Node>& nodes) {
+    constexpr Index most_in_a_leaf = 4;
+    const std::size_t here = nodes.size();
+    nodes.push_back({first, count, 0});
+    if (count <= most_in_a_leaf) return;
+    const auto range = curve.subspan(first, count);
+    Index half = count / 2;
+    if (const std::uint64_t differ = range.front().code ^ range.back().code; differ != 0) {
+        const std::uint64_t bit = std::bit_floor(differ);
+        const auto has_none = [&](const OnCurve& one) { return (one.code & bit) == 0; };
+        half = Index(std::partition_point(range.begin(), range.end(), has_none) - range.begin());
+    }
+    split(curve, first, half, nodes);
+    nodes[here].second = Index(nodes.size());
+    split(curve, first + half, count - half, nodes);
 }
 
 // A bound on how far any vertex has moved: the largest move along each axis, taken together. Where a position
@@ -114,36 +205,39 @@ Patch::Patch(std::shared_ptr<const Faces> faces, std::span<const Touchable> surf
 
 std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable> surfaces, vec3 centre,
                                                       float radius) {
-    Faces faces;
-    Mesh mesh;
     std::vector<From> from;
-    std::vector<Index> place;  // of a surface's vertices, in the mesh
+    std::vector<vec3> middles;
+    std::vector<std::vector<Index>> place(surfaces.size());  // of a surface's vertices, in the patch
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         const Touchable& surface = surfaces[s];
-        place.assign(surface.positions.size(), none);
-        for (int t : triangles_near(surface, centre, radius)) {
-            uvec3 triangle = surface.triangles[std::size_t(t)];
-            for (int k = 0; k < 3; ++k) {
-                Index& at = place[triangle[k]];
-                if (at == none) {
-                    at = Index(mesh.positions.size());
-                    mesh.positions.push_back(surface.positions[triangle[k]]);
-                    faces.vertices.push_back({int(s), triangle[k]});
-                }
-                triangle[k] = at;
-            }
-            mesh.triangles.push_back(triangle);
-            const int number = surface.numbers.empty() ? t : surface.numbers[std::size_t(t)];
-            from.push_back({int(s), number, surface.is_sheet});
+        place[s].assign(surface.positions.size(), none);
+        for (int t : near(surface, centre, radius)) {
+            const uvec3 corners = surface.triangles[std::size_t(t)];
+            from.push_back({int(s), t, surface.is_sheet});
+            middles.push_back(surface.positions[corners.x] / 3.0f + surface.positions[corners.y] / 3.0f +
+                              surface.positions[corners.z] / 3.0f);
         }
     }
-    Tree tree(mesh);
-    faces.nodes = std::move(tree.nodes);
-    faces.sorted.resize(from.size());
-    for (Index face : tree.faces) {
-        faces.sorted[face] = Index(faces.from.size());
-        faces.from.push_back(from[face]);
-        faces.triangles.push_back(mesh.triangles[face]);
+    const std::vector<OnCurve> curve = along_curve(middles);
+    Faces faces;
+    if (!curve.empty()) split(curve, 0, Index(curve.size()), faces.nodes);
+    faces.sorted.resize(curve.size());
+    faces.from.reserve(curve.size());
+    faces.triangles.reserve(curve.size());
+    for (const OnCurve& one : curve) {
+        const auto [s, t, is_sheet] = from[one.face];
+        uvec3 triangle = surfaces[std::size_t(s)].triangles[std::size_t(t)];
+        for (int k = 0; k < 3; ++k) {
+            Index& at = place[std::size_t(s)][triangle[k]];
+            if (at == none) {
+                at = Index(faces.vertices.size());
+                faces.vertices.push_back({s, triangle[k]});
+            }
+            triangle[k] = at;
+        }
+        faces.sorted[one.face] = Index(faces.from.size());
+        faces.from.push_back(from[one.face]);
+        faces.triangles.push_back(triangle);
     }
     return std::make_shared<const Faces>(std::move(faces));
 }
@@ -164,9 +258,9 @@ void Patch::gather(std::span<const Touchable> surfaces) {
 }
 
 void Patch::enclose() {
-    const std::vector<Tree::Node>& nodes = faces_->nodes;
+    const std::vector<Node>& nodes = faces_->nodes;
     for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
-        const Tree::Node& node = nodes[i];
+        const Node& node = nodes[i];
         if (node.second == 0) {
             Bounds box, speeds;
             for (Index face = node.first; face < node.first + node.count; ++face)
@@ -222,7 +316,9 @@ Patch PatchMaker::next(std::span<const Touchable> surfaces, vec3 centre, float r
         if (is_sound(patch)) return patch;
     }
     look(surfaces, centre, radius);
-    return Patch(faces_, surfaces, centre, radius, time);
+    Patch patch(faces_, surfaces, centre, radius, time);
+    size_ = total_size(patch.boxes_);
+    return patch;
 }
 
 bool PatchMaker::is_same(std::span<const Touchable> surfaces) const {
@@ -253,7 +349,6 @@ bool PatchMaker::is_sound(const Patch& patch) const {
 void PatchMaker::look(std::span<const Touchable> surfaces, vec3 centre, float radius) {
     const float reach = (1 + margin) * radius;
     faces_ = Patch::faces_near(surfaces, centre, reach);
-    size_ = total_size(faces_->nodes);
     centre_ = centre;
     reach_ = (1 - rounding) * reach - rounding * glm::length(centre);
     seen_.resize(surfaces.size());

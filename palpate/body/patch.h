@@ -1,6 +1,6 @@
 #pragma once
 #include "palpate/base/vectors.h"
-#include "palpate/mesh/tree.h"
+#include "palpate/mesh/corners.h"
 
 #include <array>
 #include <limits>
@@ -86,12 +86,16 @@ class Patch {
         int surface;
         unsigned vertex;
     };
+    struct Node {
+        Index first, count;  // the range of its triangles
+        Index second;        // the second child; the first is the next node. 0: a leaf
+    };
     // The triangles of a patch, wherever they are now: what patches share that are made one after another.
     struct Faces {
-        std::vector<Tree::Node> nodes;  // a bounding volume hierarchy over them, with the boxes at first
-        std::vector<uvec3> triangles;   // indices into `vertices`; ordered by node
-        std::vector<From> from;         // of each triangle
-        std::vector<Index> sorted;      // all triangles, so that `from` increases
+        std::vector<Node> nodes;       // a bounding volume hierarchy over them
+        std::vector<uvec3> triangles;  // indices into `vertices`; ordered by node
+        std::vector<From> from;        // of each triangle
+        std::vector<Index> sorted;     // all triangles, so that `from` increases
         std::vector<Vertex> vertices;
     };
 
@@ -115,7 +119,7 @@ class Patch {
     template <class Act>
     void for_each_within(vec3 point, float squared, float age, const Act& act) const {
         if (boxes_.empty()) return;
-        std::array<Index, 64> waiting;  // a tree that is split at medians is never so deep
+        std::array<Index, 128> waiting;  // a tree along a Z curve is never so deep
         std::size_t count = 0;
         waiting[count++] = 0;
         while (count > 0) {
@@ -124,7 +128,7 @@ class Patch {
             const vec3 low = box.low + age * box.low_speed, high = box.high + age * box.high_speed;
             const vec3 off = glm::max(glm::max(low - point, point - high), vec3(0));
             if (glm::dot(off, off) > squared) continue;
-            const Tree::Node& node = faces_->nodes[here];
+            const Node& node = faces_->nodes[here];
             if (node.second == 0) {
                 for (Index face = node.first; face < node.first + node.count; ++face) act(face);
                 continue;
