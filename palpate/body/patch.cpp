@@ -19,11 +19,47 @@ constexpr float rounding = 1e-6f;  // of lengths, relative; floats round less
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float unwatched = std::numeric_limits<float>::quiet_NaN();
 
+// Four vectors are three SIMD registers. By itself the compiler makes little use of them.
+using Register [[gnu::vector_size(16)]] = float;
+using Bits [[gnu::vector_size(16)]] = std::int32_t;
+using FourVectors = std::array<Register, 3>;
+
+FourVectors load(const vec3* from) {
+    FourVectors vectors;
+    std::memcpy(&vectors, from, sizeof vectors);
+    return vectors;
+}
+
+FourVectors four(vec3 v) {
+    const std::array<vec3, 4> same = {v, v, v, v};
+    return load(same.data());
+}
+
 // On which sides of a box a point lies, one bit for each: a triangle whose corners share one is outside.
 // What is not a number lies on all of them.
 std::uint8_t sides(vec3 p, vec3 low, vec3 high) {
     return std::uint8_t((p.x >= low.x ? 0 : 1) | (p.x <= high.x ? 0 : 2) | (p.y >= low.y ? 0 : 4) |
                         (p.y <= high.y ? 0 : 8) | (p.z >= low.z ? 0 : 16) | (p.z <= high.z ? 0 : 32));
+}
+
+std::vector<std::uint8_t> sides(std::span<const vec3> points, vec3 low, vec3 high) {
+    std::vector<std::uint8_t> found(points.size());
+    const FourVectors least = four(low), most = four(high);
+    constexpr Bits below[] = {{1, 4, 16, 1}, {4, 16, 1, 4}, {16, 1, 4, 16}};
+    const std::size_t whole = points.size() / 4 * 4;
+    for (std::size_t i = 0; i < whole; i += 4) {
+        const FourVectors now = load(&points[i]);
+        std::array<std::int32_t, 12> bits;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Bits of =
+                (~(now[k] >= least[k]) & below[k]) | (~(now[k] <= most[k]) & (below[k] + below[k]));
+            std::memcpy(&bits[4 * k], &of, sizeof of);
+        }
+        for (std::size_t k = 0; k < 4; ++k)
+            found[i + k] = std::uint8_t(bits[3 * k] | bits[3 * k + 1] | bits[3 * k + 2]);
+    }
+    for (std::size_t i = whole; i < points.size(); ++i) found[i] = sides(points[i], low, high);
+    return found;
 }
 
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -36,30 +72,35 @@ vec3 sane(vec3 velocity) {
 
 // Whether the bounding sphere of a triangle comes within `radius` of `centre`.
 bool comes_near(vec3 a, vec3 b, vec3 c, vec3 centre, float radius) {
-    const vec3 middle = (a + b + c) / 3.0f;
+    const vec3 middle = (a + b + c) / 3.0f, off = middle - centre;
+    if (glm::dot(off, off) <= radius * radius) return true;
     const float size =
         std::max({glm::distance(a, middle), glm::distance(b, middle), glm::distance(c, middle)});
     return !(glm::distance(middle, centre) > radius + size);
 }
 
-// The numbers of the triangles with finite corners that may come within `radius` of `centre`.
-std::vector<int> near(const Touchable& surface, vec3 centre, float radius) {
-    const std::size_t count = surface.positions.size();
-    std::vector<std::uint8_t> outside(count);
-    for (std::size_t i = 0; i < count; ++i)
-        outside[i] = sides(surface.positions[i], centre - radius, centre + radius);
-    std::vector<int> found;
-    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-        const uvec3 t = surface.triangles[i];
-        if (t.x >= count || t.y >= count || t.z >= count)
-            throw Error("a triangle that refers to missing vertices", "a surface to touch",
-                        "use indices of its own positions");
-        if (outside[t.x] & outside[t.y] & outside[t.z]) continue;
-        const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
-        if (is_finite(a) && is_finite(b) && is_finite(c) && comes_near(a, b, c, centre, radius))
-            found.push_back(int(i));
+constexpr std::size_t block = 64;  // triangles, and vertices, that are often ruled out together
+
+// Calls act(number) for the triangles with finite corners that may come within `radius` of `centre`.
+template <class Span, class Act>
+void for_near(const Touchable& surface, const std::vector<Span>& spans, vec3 centre, float radius,
+              const Act& act) {
+    const std::vector<std::uint8_t> outside = sides(surface.positions, centre - radius, centre + radius);
+    std::vector<std::uint8_t> all_outside((outside.size() + block - 1) / block, 0xff);
+    for (std::size_t i = 0; i < outside.size(); ++i) all_outside[i / block] &= outside[i];
+    for (std::size_t k = 0; k < spans.size(); ++k) {
+        std::uint8_t shared = 0xff;
+        for (std::size_t i = spans[k].first; i <= spans[k].last && shared; ++i) shared &= all_outside[i];
+        if (shared) continue;
+        const std::size_t end = std::min((k + 1) * block, surface.triangles.size());
+        for (std::size_t i = k * block; i < end; ++i) {
+            const uvec3 t = surface.triangles[i];
+            if (outside[t.x] & outside[t.y] & outside[t.z]) continue;
+            const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
+            if (is_finite(a) && is_finite(b) && is_finite(c) && comes_near(a, b, c, centre, radius))
+                act(int(i));
+        }
     }
-    return found;
 }
 
 // ---- a hierarchy along a Z curve ----
@@ -135,14 +176,10 @@ void split(std::span<const OnCurve> curve, Index first, Index count, std::vector
 // A bound on how far any vertex has moved: the largest move along each axis, taken together. Where a position
 // is not a number, it does not count.
 float largest_move(std::span<const vec3> from, std::span<const vec3> to) {
-    // Four vertices are three SIMD registers; the compiler does not vectorise a maximum of floats.
-    using Register [[gnu::vector_size(16)]] = float;
-    using FourVertices = std::array<Register, 3>;
-    FourVertices most = {}, before, now;
+    FourVectors most = {};
     const std::size_t whole = to.size() / 4 * 4;
     for (std::size_t i = 0; i < whole; i += 4) {
-        std::memcpy(&before, &from[i], sizeof before);
-        std::memcpy(&now, &to[i], sizeof now);
+        const FourVectors before = load(&from[i]), now = load(&to[i]);
         for (std::size_t k = 0; k < 3; ++k) {
             const Register move = now[k] - before[k], squared = move * move;
             most[k] = squared > most[k] ? squared : most[k];
@@ -187,7 +224,7 @@ std::vector<int> triangles_near(const Touchable& surface, vec3 centre, float rad
 }
 
 Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, double time)
-    : Patch(faces_near(surfaces, centre, radius), surfaces, centre, radius, time) {}
+    : Patch(faces_near(surfaces, spans(surfaces), centre, radius), surfaces, centre, radius, time) {}
 
 Patch::Patch(std::shared_ptr<const Faces> faces, std::span<const Touchable> surfaces, vec3 centre,
              float radius, double time)
@@ -203,7 +240,28 @@ Patch::Patch(std::shared_ptr<const Faces> faces, std::span<const Touchable> surf
     enclose();
 }
 
-std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable> surfaces, vec3 centre,
+std::vector<Patch::Spans> Patch::spans(std::span<const Touchable> surfaces) {
+    std::vector<Spans> all;
+    for (const Touchable& surface : surfaces) {
+        Spans& spans = all.emplace_back();
+        for (std::size_t first = 0; first < surface.triangles.size(); first += block) {
+            unsigned low = none, high = 0;
+            const std::size_t count = std::min(block, surface.triangles.size() - first);
+            for (uvec3 t : surface.triangles.subspan(first, count)) {
+                low = std::min({low, t.x, t.y, t.z});
+                high = std::max({high, t.x, t.y, t.z});
+            }
+            if (high >= surface.positions.size())
+                throw Error("a triangle that refers to missing vertices", "a surface to touch",
+                            "use indices of its own positions");
+            spans.push_back({Index(low / block), Index(high / block)});
+        }
+    }
+    return all;
+}
+
+std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable> surfaces,
+                                                      const std::vector<Spans>& spans, vec3 centre,
                                                       float radius) {
     std::vector<From> from;
     std::vector<vec3> middles;
@@ -211,12 +269,12 @@ std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable>
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         const Touchable& surface = surfaces[s];
         place[s].assign(surface.positions.size(), none);
-        for (int t : near(surface, centre, radius)) {
+        for_near(surface, spans[s], centre, radius, [&](int t) {
             const uvec3 corners = surface.triangles[std::size_t(t)];
             from.push_back({int(s), t, surface.is_sheet});
             middles.push_back(surface.positions[corners.x] / 3.0f + surface.positions[corners.y] / 3.0f +
                               surface.positions[corners.z] / 3.0f);
-        }
+        });
     }
     const std::vector<OnCurve> curve = along_curve(middles);
     Faces faces;
@@ -348,7 +406,8 @@ bool PatchMaker::is_sound(const Patch& patch) const {
 
 void PatchMaker::look(std::span<const Touchable> surfaces, vec3 centre, float radius) {
     const float reach = (1 + margin) * radius;
-    faces_ = Patch::faces_near(surfaces, centre, reach);
+    if (!faces_ || !is_same(surfaces)) spans_ = Patch::spans(surfaces);
+    faces_ = Patch::faces_near(surfaces, spans_, centre, reach);
     centre_ = centre;
     reach_ = (1 - rounding) * reach - rounding * glm::length(centre);
     seen_.resize(surfaces.size());

@@ -105,8 +105,16 @@ class Patch {
         vec3 low_speed, high_speed;  // m/s, along each axis
     };
 
+    // The blocks of vertices between which the corners of a block of triangles lie.
+    struct Span {
+        Index first, last;
+    };
+    using Spans = std::vector<Span>;  // of the blocks of a surface
+
+    static std::vector<Spans> spans(std::span<const Touchable> surfaces);
     // Of those with finite positions.
-    static std::shared_ptr<const Faces> faces_near(std::span<const Touchable> surfaces, vec3 centre,
+    static std::shared_ptr<const Faces> faces_near(std::span<const Touchable> surfaces,
+                                                   const std::vector<Spans>& spans, vec3 centre,
                                                    float radius);
     Patch(std::shared_ptr<const Faces> faces, std::span<const Touchable> surfaces, vec3 centre, float radius,
           double time);
@@ -180,6 +188,7 @@ class PatchMaker {
     vec3 centre_ = vec3(0);
     float reach_ = 0;  // m
     std::vector<Seen> seen_;
+    std::vector<Patch::Spans> spans_;  // of the surfaces seen
 };
 
 }  // namespace palpate
