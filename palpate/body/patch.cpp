@@ -197,9 +197,9 @@ float largest_move(std::span<const vec3> from, std::span<const vec3> to) {
 // m: of all boxes along all axes.
 template <class Box>
 double total_size(const std::vector<Box>& boxes) {
-    vec3 total(0);
+    decltype(Box::low) total = {};
     for (const Box& box : boxes) total += box.high - box.low;
-    return double(total.x) + total.y + total.z;
+    return double(total[0]) + total[1] + total[2];
 }
 
 }  // namespace
@@ -308,31 +308,38 @@ void Patch::gather(std::span<const Touchable> surfaces) {
     for (std::size_t i = 0; i < positions_.size(); ++i) {
         const auto [s, vertex] = faces_->vertices[i];
         const Touchable& surface = surfaces[std::size_t(s)];
-        positions_[i] = surface.positions[vertex];
+        positions_[i] = in_register(surface.positions[vertex]);
         if (surface.velocities.empty()) continue;
-        velocities_[i] = sane(surface.velocities[vertex]);
-        fastest_ = std::max(fastest_, glm::length(velocities_[i]));
+        const vec3 velocity = sane(surface.velocities[vertex]);
+        velocities_[i] = in_register(velocity);
+        fastest_ = std::max(fastest_, glm::length(velocity));
     }
 }
 
 void Patch::enclose() {
+    const auto include = [](MovingBox& box, const Vector& low, const Vector& high, const Vector& low_speed,
+                            const Vector& high_speed) {
+        box = {low < box.low ? low : box.low, high > box.high ? high : box.high,
+               low_speed < box.low_speed ? low_speed : box.low_speed,
+               high_speed > box.high_speed ? high_speed : box.high_speed};
+    };
     const std::vector<Node>& nodes = faces_->nodes;
     for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
         const Node& node = nodes[i];
         if (node.second == 0) {
-            Bounds box, speeds;
+            const unsigned some = faces_->triangles[node.first].x;
+            MovingBox box = {positions_[some], positions_[some], velocities_[some], velocities_[some]};
             for (Index face = node.first; face < node.first + node.count; ++face)
                 for (int k = 0; k < 3; ++k) {
                     const unsigned corner = faces_->triangles[face][k];
-                    box.include(positions_[corner]);
-                    speeds.include(velocities_[corner]);
+                    const Vector place = positions_[corner], velocity = velocities_[corner];
+                    include(box, place, place, velocity, velocity);
                 }
-            boxes_[i] = {box.low, box.high, speeds.low, speeds.high};
+            boxes_[i] = box;
         } else {
-            const MovingBox &first = boxes_[i + 1], &second = boxes_[node.second];
-            boxes_[i] = {glm::min(first.low, second.low), glm::max(first.high, second.high),
-                         glm::min(first.low_speed, second.low_speed),
-                         glm::max(first.high_speed, second.high_speed)};
+            const MovingBox& second = boxes_[node.second];
+            boxes_[i] = boxes_[i + 1];
+            include(boxes_[i], second.low, second.high, second.low_speed, second.high_speed);
         }
     }
 }
@@ -359,9 +366,10 @@ Patch::Face Patch::face_at(Index face, double time) const {
     Face found{{}, {}, from.surface, from.triangle, from.is_sheet};
     for (int k = 0; k < 3; ++k) {
         const unsigned corner = faces_->triangles[face][k];
-        const dvec3 velocity(velocities_[corner]);
+        const auto vector = [](const Vector& v) { return dvec3(v[0], v[1], v[2]); };
+        const dvec3 velocity = vector(velocities_[corner]);
         found.velocities[k] = guesses ? velocity : dvec3(0);
-        found.corners[k] = dvec3(positions_[corner]) + age * velocity;
+        found.corners[k] = vector(positions_[corner]) + age * velocity;
     }
     return found;
 }
@@ -400,8 +408,9 @@ bool PatchMaker::knows(std::span<const Touchable> surfaces, vec3 centre, float r
 
 // Whether all positions are finite and the boxes are not much larger than they need be.
 bool PatchMaker::is_sound(const Patch& patch) const {
-    return std::all_of(patch.positions_.begin(), patch.positions_.end(), is_finite) &&
-           total_size(patch.boxes_) <= 2 * size_;
+    Patch::Vector zero = {};  // unless one is infinite or not a number
+    for (const Patch::Vector& position : patch.positions_) zero += position - position;
+    return zero[0] + zero[1] + zero[2] == 0 && total_size(patch.boxes_) <= 2 * size_;
 }
 
 void PatchMaker::look(std::span<const Touchable> surfaces, vec3 centre, float radius) {

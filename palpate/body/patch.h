@@ -99,10 +99,12 @@ class Patch {
         std::vector<Vertex> vertices;
     };
 
+    using Vector [[gnu::vector_size(16)]] = float;  // x, y, z and 0: a SIMD register
+    static Vector in_register(vec3 v) { return Vector{v.x, v.y, v.z, 0}; }
     // The bounds of a node's vertices, which move.
     struct MovingBox {
-        vec3 low, high;              // m, at first
-        vec3 low_speed, high_speed;  // m/s, along each axis
+        Vector low, high;              // m, at first
+        Vector low_speed, high_speed;  // m/s, along each axis
     };
 
     // The blocks of vertices between which the corners of a block of triangles lie.
@@ -130,12 +132,14 @@ class Patch {
         std::array<Index, 128> waiting;  // a tree along a Z curve is never so deep
         std::size_t count = 0;
         waiting[count++] = 0;
+        const Vector centre = in_register(point);
         while (count > 0) {
             const Index here = waiting[--count];
             const MovingBox& box = boxes_[here];
-            const vec3 low = box.low + age * box.low_speed, high = box.high + age * box.high_speed;
-            const vec3 off = glm::max(glm::max(low - point, point - high), vec3(0));
-            if (glm::dot(off, off) > squared) continue;
+            const Vector below = box.low + age * box.low_speed - centre,
+                         above = centre - (box.high + age * box.high_speed);
+            const Vector off = below > above ? below : above, outside = off > 0 ? off * off : Vector{};
+            if (outside[0] + outside[1] + outside[2] > squared) continue;
             const Node& node = faces_->nodes[here];
             if (node.second == 0) {
                 for (Index face = node.first; face < node.first + node.count; ++face) act(face);
@@ -152,8 +156,8 @@ class Patch {
     float fastest_ = 0;  // m/s
     std::size_t surfaces_ = 0;
     std::shared_ptr<const Faces> faces_;
-    std::vector<MovingBox> boxes_;              // of the faces' nodes
-    std::vector<vec3> positions_, velocities_;  // of the faces' vertices
+    std::vector<MovingBox> boxes_;                // of the faces' nodes
+    std::vector<Vector> positions_, velocities_;  // of the faces' vertices
 };
 
 /// Makes the patches of a hand, one after another, on surfaces that move little from one to the next. It
