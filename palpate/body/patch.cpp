@@ -86,8 +86,13 @@ template <class Span, class Act>
 void for_near(const Touchable& surface, const std::vector<Span>& spans, vec3 centre, float radius,
               const Act& act) {
     const std::vector<std::uint8_t> outside = sides(surface.positions, centre - radius, centre + radius);
-    std::vector<std::uint8_t> all_outside((outside.size() + block - 1) / block, 0xff);
-    for (std::size_t i = 0; i < outside.size(); ++i) all_outside[i / block] &= outside[i];
+    std::vector<std::uint8_t> all_outside;  // of each block: the sides on which all of its vertices lie
+    for (std::size_t first = 0; first < outside.size(); first += block) {
+        std::uint8_t shared = 0xff;
+        for (std::uint8_t one : std::span(outside).subspan(first, std::min(block, outside.size() - first)))
+            shared &= one;
+        all_outside.push_back(shared);
+    }
     for (std::size_t k = 0; k < spans.size(); ++k) {
         std::uint8_t shared = 0xff;
         for (std::size_t i = spans[k].first; i <= spans[k].last && shared; ++i) shared &= all_outside[i];
@@ -282,6 +287,7 @@ std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable>
     faces.sorted.resize(curve.size());
     faces.from.reserve(curve.size());
     faces.triangles.reserve(curve.size());
+    faces.vertices.reserve(curve.size());
     for (const OnCurve& one : curve) {
         const auto [s, t, is_sheet] = from[one.face];
         uvec3 triangle = surfaces[std::size_t(s)].triangles[std::size_t(t)];
@@ -433,8 +439,12 @@ void PatchMaker::watch(std::span<const vec3> positions, std::vector<vec3>& watch
     watched.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const vec3 p = positions[i], off = p - centre_;
-        const bool is_within = glm::dot(off, off) < reach_ * reach_;
-        watched[i] = is_within ? vec3(unwatched) : glm::mix(p, vec3(infinity), glm::isnan(p));
+        const float squared = glm::dot(off, off);
+        if (squared >= reach_ * reach_)  // nearly always
+            watched[i] = p;
+        else
+            watched[i] =
+                squared < reach_ * reach_ ? vec3(unwatched) : glm::mix(p, vec3(infinity), glm::isnan(p));
     }
 }
 
