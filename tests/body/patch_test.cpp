@@ -169,6 +169,25 @@ TEST(PatchMaker, LooksAtAllTrianglesNowAndThenOnly) {
     EXPECT_LE(looks, 10);
 }
 
+TEST(Patch, FindsWhatMovesWhereItHasGone) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> part(-1, 1);
+    const auto anywhere = [&] { return vec3(part(random), part(random), part(random)); };
+    Cloth cloth = folded(51, 51, vec3(0));
+    for (vec3 p : cloth.rest) cloth.velocities.push_back(vec3(0.3f, -10 * p.x, 0) + 0.1f * anywhere());
+    const Patch patch(touchable({cloth}));
+    for (double age : {0.0, 0.01, 0.05, 1.0}) {
+        for (std::size_t i = 0; i < cloth.rest.size(); ++i)
+            cloth.positions[i] =
+                cloth.rest[i] + float(std::min(age, Patch::longest_guess)) * cloth.velocities[i];
+        for (int k = 0; k < 50; ++k) {
+            const dvec3 point = 0.04f * anywhere();
+            EXPECT_EQ(within(patch, point, 0.006, age).size(),
+                      count_within(touchable({cloth}), point, 0.006));
+        }
+    }
+}
+
 // A single triangle far away from a cloth under the hand.
 struct Thrown {
     Thrown() {

@@ -2,6 +2,7 @@
 // passes.
 #include "palpate/touch/proxy.h"
 
+#include "palpate/mesh/tree.h"
 #include "palpate/touch/force.h"
 #include "tests/shapes.h"
 
