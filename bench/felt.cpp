@@ -143,9 +143,12 @@ class Pressed {
     std::optional<Push> touched_;
 };
 
+// Without friction and damper, so that force at rest is a function of depth.
+Feel smooth(double stiffness) { return {.stiffness = stiffness, .damping = 0, .friction = {0, 0}}; }
+
 TouchSettings settings_for(const FeltBlock& block) {
     return {.radius = block.radius,
-            .feels = {{.stiffness = block.stiffness}},
+            .feels = {smooth(block.stiffness)},
             .safety = {.most_damping = block.most_damping}};
 }
 
@@ -319,7 +322,7 @@ bool comes_to_rest(const FeltHold& hold, double stiffness) {
     arm.peak_force = arm.lasting_force = 1e9f;
     arm.stiffest_wall = float(4 * StiffestTouch::most);
     const Path plan = held_down(block, arm, jumps);
-    TouchSettings settings = without_limits({.stiffness = stiffness}, hold.most_damping);
+    TouchSettings settings = without_limits(smooth(stiffness), hold.most_damping);
     settings.radius = block.radius;
     settings.surprise = 1;
     Pressed pressed(made(block), {.slice = hold.slice, .gives_back_in = hold.gives_back_in},

@@ -209,25 +209,6 @@ double total_size(const std::vector<Box>& boxes) {
 
 }  // namespace
 
-std::vector<int> triangles_near(const Touchable& surface, vec3 centre, float radius) {
-    const std::size_t count = surface.positions.size();
-    std::vector<std::uint8_t> outside(count);
-    for (std::size_t i = 0; i < count; ++i)
-        outside[i] = sides(surface.positions[i], centre - radius, centre + radius);
-    std::vector<int> found;
-    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-        const uvec3 t = surface.triangles[i];
-        if (t.x >= count || t.y >= count || t.z >= count)
-            throw Error("a triangle that refers to missing vertices", "a surface to touch",
-                        "use indices of its own positions");
-        if (outside[t.x] & outside[t.y] & outside[t.z]) continue;
-        const vec3 a = surface.positions[t.x], b = surface.positions[t.y], c = surface.positions[t.z];
-        if (is_finite(a) && is_finite(b) && is_finite(c) && comes_near(a, b, c, centre, radius))
-            found.push_back(int(i));
-    }
-    return found;
-}
-
 Patch::Patch(std::span<const Touchable> surfaces, vec3 centre, float radius, double time)
     : Patch(faces_near(surfaces, spans(surfaces), centre, radius), surfaces, centre, radius, time) {}
 
@@ -265,6 +246,12 @@ std::vector<Patch::Spans> Patch::spans(std::span<const Touchable> surfaces) {
     return all;
 }
 
+std::vector<int> Patch::near(const Touchable& surface, vec3 centre, float radius) {
+    std::vector<int> found;
+    for_near(surface, spans({&surface, 1}).front(), centre, radius, [&](int t) { found.push_back(t); });
+    return found;
+}
+
 std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable> surfaces,
                                                       const std::vector<Spans>& spans, vec3 centre,
                                                       float radius) {
@@ -300,7 +287,8 @@ std::shared_ptr<const Patch::Faces> Patch::faces_near(std::span<const Touchable>
             triangle[k] = at;
         }
         faces.sorted[one.face] = Index(faces.from.size());
-        faces.from.push_back(from[one.face]);
+        const std::span<const int> numbers = surfaces[std::size_t(s)].numbers;
+        faces.from.push_back({s, numbers.empty() ? t : numbers[std::size_t(t)], is_sheet});
         faces.triangles.push_back(triangle);
     }
     return std::make_shared<const Faces>(std::move(faces));

@@ -20,10 +20,6 @@ struct Touchable {
     std::span<const int> numbers = {};      // of the triangles, where they are part of a larger surface
 };
 
-/// The triangles with finite corners that may come within `radius` of `centre`, as places in the list. Throws
-/// Error if one refers to missing vertices.
-std::vector<int> triangles_near(const Touchable& surface, vec3 centre, float radius);
-
 /// The triangles near a place that a hand can touch, with their motion, in a bounding volume hierarchy: the
 /// broad phase of contact. Queries allocate nothing, so a haptic loop may make them.
 class Patch {
@@ -43,6 +39,10 @@ class Patch {
     /// `longest_guess` at most. Throws Error if a triangle refers to missing vertices.
     explicit Patch(std::span<const Touchable> surfaces, vec3 centre = vec3(0),
                    float radius = std::numeric_limits<float>::infinity(), double time = 0);
+
+    /// Which triangles of a surface have finite corners and come within `radius` of `centre`, and some that
+    /// are slightly farther away. Throws Error likewise.
+    static std::vector<int> near(const Touchable& surface, vec3 centre, float radius);
 
     static constexpr double longest_guess = 0.05;  // s: three frames. After that the simulation must have
                                                    // stalled

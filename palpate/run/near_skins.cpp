@@ -79,7 +79,7 @@ void NearSkins::choose(const Play& play, const Models& models, vec3 centre, floa
     chosen_nodes_.resize(bodies);
     for (std::size_t s = 0; s < all.size(); ++s) {
         Part& part = parts_[s];
-        part.numbers = triangles_near({all[s].positions, *all[s].triangles}, centre, reach_);
+        part.numbers = Patch::near({all[s].positions, *all[s].triangles}, centre, reach_);
         auto [vertices, triangles] = cut_out(*all[s].triangles, part.numbers, all[s].positions.size());
         part.triangles = std::move(triangles);
         skins_[s] = {{}, {}, &part.triangles, all[s].is_sheet, part.numbers};

@@ -146,9 +146,7 @@ void check(Friction friction, const std::string& table, const Require& require) 
             "make it no larger");
 }
 
-void check(const Feel& feel, const Require& require) {
-    check(feel.friction, "touch.", require);
-}
+void check(const Feel& feel, const Require& require) { check(feel.friction, "touch.", require); }
 
 // Common to all recipes of a surface.
 void check_surface(const BodyRecipe& body, const Require& require) {

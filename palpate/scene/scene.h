@@ -196,11 +196,11 @@ struct ToolRecipe {
     ToolKind kind = ToolKind::press;
     std::string device =
         "script";  // for a dent or a touch: the name of a device that follows a path (touch/drivers.h)
-    float radius = 0.01f;   // m; for a drag only the size of the drawing
-    float stiffness = 400;  // N/m, see Press and NodePush; 50 for a drag
+    float radius = 0.01f;        // m; for a drag only the size of the drawing
+    float stiffness = 400;       // N/m, see Press and NodePush; 50 for a drag
     Friction friction = {0, 0};  // of a press, see there,
     float damping = 0;           // N·s/m, and its damper
-    Path path;              // s, m; a file of rows or the rows themselves
+    Path path;                   // s, m; a file of rows or the rows themselves
     vec3 colour = vec3(0.25f, 0.45f, 0.75f);
     // ---- for a press, a dent or a touch ----
     /// If given, the path starts where the tip, moved from this point ...

@@ -87,9 +87,9 @@ class Touch {
 
     /// Sets what the hand can touch from now on. Call it whenever surfaces have moved; once if they do not
     /// move. Simulated surfaces are felt by their load and keep no dents. The load acts while the tip touches
-    /// or grasps one of them, and in the first tick of a patch, but no longer than 20 ms after the patch's time. While
-    /// Safety waits for a small force, what is wanted is as of surfaces that stand still. Throws Error if
-    /// there are more surfaces than feels.
+    /// or grasps one of them, and in the first tick of a patch, but no longer than 20 ms after the patch's
+    /// time. While Safety waits for a small force, what is wanted is as of surfaces that stand still. Throws
+    /// Error if there are more surfaces than feels.
     void feel(Patch patch, Simulated simulated = {});
 
     /// The newest state.

@@ -153,7 +153,7 @@ TEST(NearSkins, HoldAllThatIsNear) {
         const Skin& whole = play.skins()[0];
         std::set<int> numbers(some[0].numbers.begin(), some[0].numbers.end());
         EXPECT_LT(numbers.size(), whole.triangles->size());
-        for (int t : triangles_near({whole.positions, *whole.triangles}, centre, reach))
+        for (int t : Patch::near({whole.positions, *whole.triangles}, centre, reach))
             EXPECT_TRUE(numbers.contains(t)) << frame;
         for (std::size_t t = 0; t < some[0].numbers.size(); ++t)
             for (int k = 0; k < 3; ++k)
