@@ -134,7 +134,7 @@ void replay(const std::string& file) {
     while (experiment.replay(recording)) {}
     const bool same = experiment.fingerprint() == recording.fingerprint;
     fmt::print("{}\n", recording.scene.name);
-    print_table({{"frames", grouped(recording.frames)},
+    print_table({{"advanced", fmt::format("{} times", grouped(recording.advances))},
                  {"inputs", grouped((long long)recording.inputs.size())},
                  {"state at the end", same ? "the same to the bit" : "different"}});
     if (!same)

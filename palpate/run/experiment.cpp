@@ -14,9 +14,9 @@ namespace palpate {
 namespace {
 
 constexpr long slices_between_good = 30 * slices_per_frame;
-constexpr std::size_t most_good = 5;           // so the oldest is about two seconds old
-constexpr std::size_t most_inputs = 500'000;   // of a recording: hours
-constexpr std::size_t most_samples = 60 * 60;  // of a report's curves
+constexpr std::size_t most_good = 5;          // so the oldest is about two seconds old
+constexpr std::size_t most_inputs = 500'000;  // of a recording: hours, or minutes of a live hand
+constexpr double longest_curve = 60;          // s, of a report
 
 std::string key_of(const Change& change) { return change.substr(0, change.find('=')); }
 
@@ -224,7 +224,7 @@ void Experiment::set(const Setting& setting) {
     carry_over(made);
     if (!same_shapes(setting.changes, changes())) shapes_ = std::make_shared<char>();
     take(std::move(made));
-    record({done_.frames, SetChanges{setting.changes}});
+    record({done_.advances, SetChanges{setting.changes}});
 }
 
 std::unique_ptr<Experiment> Experiment::beside(const std::vector<Change>& more) const {
@@ -284,7 +284,7 @@ void Experiment::return_to_good() {
     if (fits(made)) made.play->take_tools(play());
     if (!same_shapes(good.setting.changes, changes())) shapes_ = std::make_shared<char>();
     take(std::move(made));
-    record({done_.frames, ReturnToGood{}});
+    record({done_.advances, ReturnToGood{}});
     slice_ = good.slice;
     if (good.setting != history_[at_]) add_to_history(good.setting);
     good_ = {good};
@@ -332,15 +332,16 @@ double Experiment::stable_step(std::size_t body) const {
 bool Experiment::advance(const Interaction& hands, int slices) {
     if (!trouble_.empty()) return false;
     if (good_.empty() || slice_ >= good_.back().slice + slices_between_good) remember();
-    if (!hands.empty() || slices != slices_per_frame) record({done_.frames, hands, slices});
-    ++done_.frames;
+    if (!hands.empty() || slices != slices_per_frame) record({done_.advances, hands, slices});
+    ++done_.advances;
     if (!made_.play->advance(time(), slices * slice_seconds, hands)) {
         trouble_ = report().notes.empty() ? "the motion blew up" : report().notes.back();
         return false;
     }
     slice_ += slices;
     for (Report::Tool& tool : made_.report->tools)
-        if (tool.time.size() > most_samples) tool.time.clear(), tool.force.clear(), tool.indentation.clear();
+        if (!tool.time.empty() && tool.time.back() > tool.time.front() + longest_curve)
+            tool.time.clear(), tool.force.clear(), tool.indentation.clear();
     return true;
 }
 
@@ -366,9 +367,11 @@ void Experiment::record(Input input) {
     if (records_ && done_.inputs.size() <= most_inputs) done_.inputs.push_back(std::move(input));
 }
 
+bool Experiment::recording_is_full() const { return done_.inputs.size() > most_inputs; }
+
 Recording Experiment::recording() const {
     require_text();
-    if (done_.inputs.size() > most_inputs)
+    if (recording_is_full())
         throw Error("more inputs than a recording holds", "the experiment", "restart it to begin a new one");
     Recording all = done_;
     all.fingerprint = fingerprint();
@@ -389,7 +392,7 @@ bool Experiment::replay(const Recording& recording) {
 int Experiment::replay_one(const Recording& recording) {
     Interaction hands;
     int slices = slices_per_frame;
-    for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= done_.frames;
+    for (; replayed_ < recording.inputs.size() && recording.inputs[replayed_].at <= done_.advances;
          ++replayed_) {
         const Input& input = recording.inputs[replayed_];
         if (const auto* some = std::get_if<Interaction>(&input.what)) {
@@ -402,21 +405,23 @@ int Experiment::replay_one(const Recording& recording) {
             return_to_good();
         }
     }
-    if (done_.frames >= recording.frames || !trouble_.empty()) return 0;
+    if (done_.advances >= recording.advances || !trouble_.empty()) return 0;
     if (!takes(hands))
-        throw Error(fmt::format("frame {} has an interaction that the bodies cannot take", done_.frames),
-                    "the recording", "replay it with the files that it was made with");
+        throw Error(fmt::format("input {} is one that the bodies cannot take", replayed_), "the recording",
+                    "replay it with the files that it was made with");
     advance(hands, slices);
     return slices;
 }
 
 bool Experiment::takes(const Interaction& hands) const {
-    constexpr float most = 1e4f;  // times the usual stiffness, with which the step is about a hundredth
+    // Times the usual stiffness: with pulls the step is about a hundredth then; a tip may be much smaller.
+    constexpr float most = 1e4f, most_of_tip = 1e8f;
     const auto& models = this->models().models;
     float pressure = 0;
     for (const Model& model : models) pressure = std::max(pressure, strength_for(model.body).pressure);
     for (const Press& press : hands.presses)
-        if (!(press.radius > 0 && press.stiffness >= 0 && pressure_per_metre(press) <= most * pressure))
+        if (!(press.radius > 0 && press.stiffness >= 0 &&
+              pressure_per_metre(press) <= most_of_tip * pressure))
             return false;
     std::vector<float> strengths;
     for (const Model& model : models) strengths.push_back(most * strength_for(model.body).pull);

@@ -30,7 +30,7 @@ Prepared prepare(Models models);
 /// From a body and a surface that follows it.
 Prepared prepare(Body body, Mesh surface);
 
-/// The stiffness of the user's hand on a body: like the springs of its heaviest nodes, so that it moves what
+/// The usual stiffness of a hand on a body: like the springs of its heaviest nodes, so that it moves what
 /// it holds, and less for light nodes, so that the step need not be much shorter.
 struct Strength {
     float pull = 0;      // N/m per kg of a node that is dragged
@@ -113,6 +113,7 @@ class Experiment {
 
     /// All inputs since it began or was restarted; see replay(). Throws Error if there were too many to keep.
     Recording recording() const;
+    bool recording_is_full() const;
 
     /// Applies a recording's next inputs, and advances by at least a frame. False after the last input, or if
     /// the motion has diverged for good.

@@ -23,11 +23,12 @@ void measure(std::vector<vec3>& speeds, const std::vector<vec3>& from, const std
 FeltHand::FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth)
     : touch_(std::move(device), std::move(settings), warmth), start_(start) {}
 
-void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, const Simulated& simulated) {
+void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, const Simulated& simulated,
+                    std::optional<double> moved_for) {
     felt_ = touch_.felt();
     before_.resize(skins.size());
     speeds_.resize(skins.size());
-    const double seconds = std::max(time - before_time_, shortest);
+    const double seconds = std::max(moved_for.value_or(time - before_time_), shortest);
     std::vector<Touchable> surfaces;
     for (std::size_t s = 0; s < skins.size(); ++s) {
         const Skin& skin = skins[s];
@@ -45,7 +46,6 @@ void FeltHand::feel(const std::vector<Skin>& skins, double time, float reach, co
 
 void FeltHand::begin_anew() {
     expect_jump();
-    maker_.forget();
     begins_anew_ = true;
 }
 

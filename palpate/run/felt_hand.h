@@ -19,13 +19,17 @@ class FeltHand {
     FeltHand(std::unique_ptr<Device> device, TouchSettings settings, vec3 start, const Warmth& warmth = {});
 
     /// Sets what it can touch from `time` on: the skins within `reach` of it, as they lie then, with
-    /// velocities from the last call on. `reach`: m, more than it moves until the next call.
+    /// velocities from the last call on. `reach`: m, more than it moves until the next call. `moved_for`: s,
+    /// of the surfaces' own time since the last call, if that is not the difference of `time`.
     void feel(const std::vector<Skin>& skins, double time,
-              float reach = std::numeric_limits<float>::infinity(), const Simulated& simulated = {});
+              float reach = std::numeric_limits<float>::infinity(), const Simulated& simulated = {},
+              std::optional<double> moved_for = {});
 
-    /// Says that the skins of the next feel() have jumped instead of moved: ...
+    /// Says that the skins of the next feel() have jumped instead of moved, or have other vertices: ...
     void expect_jump() {
         before_.clear();
+        maker_.forget();
+        pressed_from_.reset();
         jumps_ = true;
     }
     /// Says where they were at the last feel(), since the next has other vertices.

@@ -60,7 +60,7 @@ void LiveTouch::grasp(std::size_t hand, std::vector<BodyPush> pulls, vec3 at) {
 }
 
 void LiveTouch::go_on() {
-    if (on_gpu(experiment_.models().simulation.backend))
+    if (!may_go_on())
         throw Error("bodies on a GPU cannot be advanced on another thread", experiment_.source().name,
                     "use the backend cpu; or call LiveTouch::advance() on the thread of the context");
     const double time = now();
@@ -71,6 +71,11 @@ void LiveTouch::go_on() {
         goes_ = true;
     }
     changed_.notify_all();
+}
+
+bool LiveTouch::may_go_on() const {
+    auto is_on_gpu = [](const Experiment& one) { return on_gpu(one.models().simulation.backend); };
+    return !is_on_gpu(experiment_) && !(beside_ && is_on_gpu(*beside_));
 }
 
 void LiveTouch::hold_still() {
@@ -124,7 +129,8 @@ bool LiveTouch::advance(int slices) {
             near_[h].at(experiment_.play(), experiment_.models(), hands_[h]->place(), reach);
         if (near_[h].chose()) hands_[h]->remember(near_[h].before());
         hands_[h]->feel(skins, start, reach,
-                        {.surfaces = bodies, .load = loads_[h], .grasped = !grasps_[h].pulls.empty()});
+                        {.surfaces = bodies, .load = loads_[h], .grasped = !grasps_[h].pulls.empty()},
+                        last_seconds_);
         hands.presses.push_back(hands_[h]->press(seconds, bodies));
         const vec3 place(hands_[h]->felt().pose.place), last = std::exchange(grasps_[h].last, place);
         for (BodyPush pull : grasps_[h].pulls) {
@@ -141,6 +147,7 @@ bool LiveTouch::advance(int slices) {
         for (std::size_t i = 0; goes_well && i < grasps_[h].pulls.size(); ++i)
             loads_[h] += felt.pulls[pull++];
     }
+    last_seconds_ = seconds;
     besides_age_ += seconds;
     done_ += slices;
     lengths_.add(seconds);

@@ -34,8 +34,9 @@ class LiveTouch {
     /// Begins to advance on a thread of its own. Until hold_still(), nobody else may use the experiments or
     /// the hands. Throws Error if the bodies are on a GPU, whose context belongs to one thread.
     void go_on();
-    /// Waits for the end of a slice, at most a frame, and throws what that threw. Time stands still for the
-    /// bodies until it goes on, when they catch up, by a frame at most.
+    bool may_go_on() const;  // whether they are not
+    /// Waits for the end of a slice, at most a frame of simulated time, and throws what that threw. Time
+    /// stands still for the bodies until it goes on, when they catch up, by a frame at most.
     void hold_still();
 
     /// Advances on the caller's thread, while it is held still: once, by so many slices. False as
@@ -65,9 +66,10 @@ class LiveTouch {
     Experiment::Shapes shapes_;    // of those
     std::vector<dvec3> loads_;     // N, on the hands, in the last slice
     Interaction besides_;
-    double besides_age_ = 0;  // s, simulated
-    double begun_ = 0;        // s, when it went on, less than a frame ago if it cannot keep up,
-    long done_ = 0;           // and the slices since
+    double besides_age_ = 0;              // s, simulated
+    std::optional<double> last_seconds_;  // the length of the last slice
+    double begun_ = 0;                    // s, when it went on, less than a frame ago if it cannot keep up,
+    long done_ = 0;                       // and the slices since
     Durations lengths_, work_;
 
     std::mutex mutex_;

@@ -4,6 +4,8 @@
 #include "palpate/run/play.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace palpate {
@@ -11,13 +13,14 @@ namespace {
 
 constexpr float spare = 0.015f;  // m, by which parts reach farther than they must
 
-// m; NaN if a position is.
+// m; infinite if a position is not finite.
 float farthest_move(std::span<const vec3> from, std::span<const vec3> to) {
     float squared = 0;
     for (std::size_t i = 0; i < to.size(); ++i) {
         const vec3 move = to[i] - from[i];
         const float one = glm::dot(move, move);
-        squared = one <= squared ? squared : one;
+        if (!std::isfinite(one)) return std::numeric_limits<float>::infinity();
+        squared = std::max(squared, one);
     }
     return std::sqrt(squared);
 }

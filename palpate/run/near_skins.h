@@ -14,7 +14,8 @@ struct Models;
 class NearSkins {
  public:
     /// All triangles within `reach` of `centre`, and some that are farther away; one skin for each of the
-    /// play's, without normals. Valid until the next call.
+    /// play's, without normals. Valid until the next call. A vertex is taken to move no farther than the node
+    /// that moves farthest, and 15 mm are to spare.
     const std::vector<Skin>& at(const Play& play, const Models& models, vec3 centre, float reach);
     /// To be called before at() is called with another play or other models.
     void forget() { parts_.clear(); }

@@ -320,7 +320,9 @@ void Play::map() const {
 // From a GPU nodes are not fetched for the report alone.
 void Play::measure(const Acting& on, double time, double seconds, const WorldSlice& slice) {
     const bool is_last = slice.at + slice.seconds > seconds - 1e-9;
-    if (!follows_contacts_ && (!is_last || on_gpu(made_.simulation.backend))) return;
+    const bool is_shown = std::ranges::any_of(
+        scene_.bodies, [](const BodyRecipe& recipe) { return recipe.shade == Shade::pressure; });
+    if (!follows_contacts_ && (!is_last || (on_gpu(made_.simulation.backend) && !is_shown))) return;
     std::vector<std::optional<std::size_t>> tools(on.presses.size());
     std::ranges::copy(on.tool_of_press, tools.begin());
     for (std::size_t t = 0; t < handles_.size(); ++t)

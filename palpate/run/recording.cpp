@@ -108,8 +108,8 @@ Recording to_recording(const json& all) {
     Recording recording;
     recording.scene = {scene.at("text"), scene.at("name"), scene.at("folder").get<std::string>()};
     recording.changes = all.at("changes").get<std::vector<Change>>();
-    recording.frames = all.at("frames").get<long>();
-    if (recording.frames < 0 || recording.frames > most_frames)
+    recording.advances = all.at("frames").get<long>();
+    if (recording.advances < 0 || recording.advances > most_frames)
         throw std::string("an invalid number of frames");
     recording.fingerprint = all.at("fingerprint");
     for (const json& one : all.at("inputs")) {
@@ -117,7 +117,7 @@ Recording to_recording(const json& all) {
         const auto& list = recording.inputs;
         if (list.back().at < (list.size() > 1 ? list[list.size() - 2].at : 0))
             throw std::string("inputs that go back in time");
-        if (list.back().at > recording.frames) throw std::string("inputs after the last frame");
+        if (list.back().at > recording.advances) throw std::string("inputs after the last frame");
     }
     return recording;
 }
@@ -131,7 +131,7 @@ void write_recording(const Recording& recording, const std::filesystem::path& fi
                   {"folder", recording.scene.folder.string()},
                   {"text", recording.scene.text}}},
                 {"changes", recording.changes},
-                {"frames", recording.frames},
+                {"frames", recording.advances},
                 {"fingerprint", recording.fingerprint},
                 {"inputs", json::array()}};
     for (const Input& input : recording.inputs) all["inputs"].push_back(of_input(input));

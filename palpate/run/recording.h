@@ -29,7 +29,7 @@ struct Recording {
     SceneText scene;  // its text is included; the files that it names are not
     std::vector<Change> changes;
     std::vector<Input> inputs;  // in order of time
-    long frames = 0;            // how often it advanced: by a frame, where no input says otherwise
+    long advances = 0;          // how often it advanced: by a frame, where no input says otherwise
     std::string fingerprint;    // of the state after the last
 };
 

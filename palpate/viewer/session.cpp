@@ -90,6 +90,9 @@ void Session::say_trouble() {
     };
     say(experiment_->trouble(), said_, "", "; it is held where it was last sound");
     say(beside_ ? beside_->trouble() : "", said_beside_, "on the right, ", "");
+    const bool is_full = experiment_->recording_is_full();
+    if (is_full && !said_full_) message_.say("the recording is full; restart to begin a new one");
+    said_full_ = is_full;
 }
 
 bool Session::replay_frame() {

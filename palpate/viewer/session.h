@@ -43,7 +43,7 @@ class Session {
     /// frame. Throws Error.
     bool advance(const Interaction& hands);
 
-    /// Says, once, what stopped one of them since the last call.
+    /// Says, once, what stopped one of them since the last call, and that the recording is full.
     void say_trouble();
 
  private:
@@ -53,8 +53,9 @@ class Session {
     Message& message_;
     std::unique_ptr<Import> import_;
     std::unique_ptr<Experiment> experiment_, beside_;
-    Compared compared_;                         // what beside_ was made for
-    std::string said_, said_beside_;            // of their trouble
+    Compared compared_;               // what beside_ was made for
+    std::string said_, said_beside_;  // of their trouble
+    bool said_full_ = false;
     std::optional<Recording> replay_, coming_;  // what is replayed; what import_ is for
 };
 

@@ -21,6 +21,7 @@ void Viewer::open_file(const std::filesystem::path& file) noexcept {
 }
 
 void Viewer::begin(Prepared prepared) {
+    hold_still();
     session_.begin(std::move(prepared));
     feeling_.drop();
     let_go();
@@ -100,6 +101,7 @@ void Viewer::step_once() {
 // ---- advancing ----
 
 void Viewer::advance(int frames) {
+    hold_still();
     if (auto prepared = session_.take_import()) message_.attempt([&] { begin(std::move(*prepared)); });
     if (!experiment()) return;
     holds_.keep_fitting(*experiment());
@@ -109,7 +111,7 @@ void Viewer::advance(int frames) {
     for (int f = 0; f < frames && !options.paused && (replaying() || experiment()->trouble().empty()); ++f)
         one_frame();
     session_.say_trouble();
-    feeling_.live(session_, may_be_live());
+    message_.attempt([&] { feeling_.live(session_, may_be_live()); });
     message_.attempt([&] { feeling_.advance(*experiment(), options, sight()); });
     readings_.measure(*experiment(), !options.paused);
     if (feeling()) readings_.feel(feeling()->felt());
@@ -138,19 +140,20 @@ void Viewer::hand_over_to(LiveTouch& live) {
 
 // A film shows every frame of the scene, so it does not go on by itself.
 void Viewer::go_on() {
-    LiveTouch* live = feeling_.live(session_, may_be_live());
-    if (!live || filming() || on_gpu(experiment()->models().simulation.backend)) return;
+    LiveTouch* live = nullptr;
+    message_.attempt([&] { live = feeling_.live(session_, may_be_live()); });
+    if (!live || filming() || !live->may_go_on()) return;
     message_.attempt([&] {
         hand_over_to(*live);
         live->go_on();
-        went_on_ = true;
+        live_ = went_on_ = true;
     });
 }
 
 void Viewer::hold_still() {
-    LiveTouch* live = feeling_.live();
-    if (!live) return;
-    message_.attempt([&] { live->hold_still(); });
+    if (!std::exchange(live_, false)) return;
+    if (!message_.attempt([&] { feeling_.live()->hold_still(); }))
+        options.paused = true;  // it would fail again
     views_.wake();
 }
 
@@ -197,7 +200,10 @@ void Viewer::reach_in(bool pulls) {
     if (moves && replaying()) {
         message_.say("a recording is being replayed; press R to start over");
     } else if (options.mode == Mode::hand && !pulls) {
-        if (feeling_.begin_press(*experiment(), options.tip, sight())) drag_ = Drag::hold;
+        if (feeling_.begin_press(*experiment(), options.tip, sight()))
+            drag_ = Drag::hold;
+        else
+            message_.say("the device touches and presses; the mouse pulls, with Shift");
     } else if (!moves) {
         message_.say("nothing moves this surface; it can be touched");
     } else if (options.mode == Mode::pin) {

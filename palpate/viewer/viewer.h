@@ -79,12 +79,11 @@ class Viewer {
     /// and draws it into the framebuffer that is bound.
     void draw();
 
-    /// While a hand presses bodies, they advance on a thread of their own from here to hold_still(); in
-    /// between, nothing but draw() may be called.
+    /// While a hand presses bodies, they advance on a thread of their own from here to hold_still(). In
+    /// between, only draw() may be called, and what does not look at the experiment.
     void go_on();
     void hold_still();
-    /// Whether go_on() has an effect.
-    bool is_live() { return may_be_live() && feeling_.live(); }
+    bool is_live() const { return live_; }  // in between
     /// The picture in full quality, without the window's frame or controls.
     Image image();
 
@@ -131,7 +130,8 @@ class Viewer {
     Button drag_button_ = Button::left;  // the button that began it
     bool touched_ = false;
     std::vector<vec3> selected_;  // m, around what was last grasped
-    bool went_on_ = false;        // since the last advance()
+    bool live_ = false;           // on a thread of its own
+    bool went_on_ = false;        // likewise, since the last advance()
 };
 
 }  // namespace palpate

@@ -16,6 +16,11 @@ constexpr float jump = 0.04f;       // m: more than a person moves a hand betwee
 // Of a hand without motors: nothing needs to begin gently.
 constexpr SafetySettings without_motors{.small_force = 1e6, .calm = 0.01, .ramp = 0.01};
 
+// Bodies are felt as they answer, so without LiveTouch not at all.
+void feel_what_stands(FeltHand& hand, const Experiment& experiment) {
+    hand.feel(experiment.play().skins(), now(), beyond, {.surfaces = experiment.models().models.size()});
+}
+
 float middle_of(const Camera& camera) { return glm::distance(camera.look_at, camera.eye); }
 
 }  // namespace
@@ -26,7 +31,7 @@ void ViewerTouch::advance(const Experiment& experiment, Options& options, const 
     become(experiment, options, sight);
     if (!hand_) return;
     if (looked_ != sight.size) look(sight);
-    if (!live_) hand_->feel(experiment.play().skins(), now(), beyond);
+    if (!live_) feel_what_stands(*hand_, experiment);
     if (mouse_) follow_pointer(experiment, options.tip, sight);
 }
 
@@ -72,7 +77,7 @@ void ViewerTouch::make(const Experiment& experiment, const Sight& sight) {
     const TouchSettings of_touch{
         .radius = kind_.tip, .feels = kind_.feels, .safety = mouse_ ? without_motors : SafetySettings{}};
     auto hand = std::make_unique<FeltHand>(std::move(device), of_touch, start, warmth_);
-    hand->feel(experiment.play().skins(), now(), beyond);
+    feel_what_stands(*hand, experiment);
     hand->go_live();
     hand_ = std::move(hand);
 }
@@ -181,8 +186,12 @@ LiveTouch* ViewerTouch::live(Session& session, bool may) {
     const bool is_wanted = may && hand_ && (!mouse_ || pressing_) && session.experiment() &&
                            !session.experiment()->models().models.empty();
     const bool is_right = lives_ == session.experiment() && lives_beside_ == session.beside();
-    if (live_ && !(is_wanted && is_right)) live_.reset();
+    if (live_ && !(is_wanted && is_right)) {
+        live_.reset();
+        hand_->expect_jump();
+    }
     if (is_wanted && !live_) {
+        hand_->expect_jump();
         live_ =
             std::make_unique<LiveTouch>(*session.experiment(), std::vector{hand_.get()}, session.beside());
         lives_ = session.experiment();

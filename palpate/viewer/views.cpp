@@ -93,6 +93,7 @@ void Views::look(const Traces& traces, bool always, bool may_be_draft) {
 void Views::look(const Quality& quality, const Traces& traces) {
     const Experiment &experiment = *session_.experiment(), *beside = session_.beside();
     is_due_ = true;
+    looked_ = now();
     is_first_ |= drawn_of_ != experiment.shapes();
     drawn_of_ = experiment.shapes();
     pane_.resize(view_size());
@@ -109,7 +110,7 @@ std::optional<float> Views::draw() {
     const double start = now();
     if (is_due_) {
         draw_panes();
-        drawn_ = start;
+        drawn_ = looked_;
     }
     pane_.show({left_, 0});
     if (other_is_shown_) other_pane_.show({left_ + view_size().x, 0});

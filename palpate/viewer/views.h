@@ -61,7 +61,8 @@ class Views {
     bool other_is_shown_ = false;  // beside the other
     bool is_due_ = false;          // a picture, since look()
     bool is_first_ = false;        // it will be the first of new meshes
-    double drawn_ = 0;             // s, when the picture was last drawn,
+    double looked_ = 0;            // s, when that was called
+    double drawn_ = 0;             // the same, of the picture that was last drawn,
     Drawing drawn_as_;             // how,
     Experiment::Shapes drawn_of_;  // and of what
 };

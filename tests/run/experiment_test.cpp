@@ -366,7 +366,7 @@ TEST(Recording, ReplaysToTheSameBits) {
     Experiment again(prepare(recording.scene, recording.changes));
     int frames = 0;
     while (again.replay(recording)) ++frames;
-    EXPECT_EQ(frames, recording.frames);
+    EXPECT_EQ(frames, recording.advances);
     EXPECT_EQ(again.fingerprint(), original.fingerprint());
     EXPECT_FALSE(again.replay(recording));
     // And what was replayed is a recording again.

@@ -196,7 +196,7 @@ TEST_F(ViewerTest, ItGoesOnWhileItIsDrawn) {
         time = viewer.experiment()->time() - start;
     }
     EXPECT_GE(most, 0.02f);
-    viewer.save(Output::picture);
+    EXPECT_GT(viewer.image().pixels.size(), 0u);
     viewer.release(Button::left);
     viewer.advance(1);
     EXPECT_FALSE(viewer.is_live());
@@ -206,6 +206,45 @@ TEST_F(ViewerTest, ItGoesOnWhileItIsDrawn) {
     viewer.hold_still();
     EXPECT_EQ(viewer.experiment()->time(), still);
     EXPECT_TRUE(viewer.experiment()->trouble().empty());
+}
+
+// A body keeps no dents, also not when the hand lets go of it.
+TEST_F(ViewerTest, APressLeavesNoDentInABody) {
+    open("box", {"simulation.gravity=[0,0,0]", "body.1.touch.yield=0"});
+    viewer.move_pointer(middle());
+    viewer.advance(1);
+    viewer.press(Button::left);
+    for (int i = 0; i < 300 && force() < 0.05f; ++i) live(10);
+    EXPECT_GE(force(), 0.05f);
+    viewer.options.paused = true;
+    for (int i = 0; i < 5; ++i) live(10);
+    viewer.options.paused = false;
+    viewer.release(Button::left);
+    for (int i = 0; i < 10; ++i) {
+        live(10);
+        EXPECT_EQ(viewer.feeling()->felt().lasting, 0);
+    }
+    EXPECT_FALSE(viewer.can_undo());
+}
+
+// What is on a GPU advances where its context is, so both of a comparison do.
+TEST_F(ViewerTest, AHandPressesBothOfAComparison) {
+    open("box", {"simulation.gravity=[0,0,0]"});
+    viewer.options.compared = {.with = Compared::With::backend, .backend = Backend::compute};
+    viewer.advance(1);
+    ASSERT_TRUE(viewer.beside()) << viewer.message().text;
+    viewer.move_pointer(middle());
+    viewer.advance(1);
+    viewer.press(Button::left);
+    for (int i = 0; i < 300 && force() < 0.05f; ++i) {
+        live(10);
+        EXPECT_FALSE(viewer.is_live());
+    }
+    EXPECT_GE(force(), 0.05f);
+    EXPECT_EQ(viewer.experiment()->time(), viewer.beside()->time());
+    const auto here = viewer.experiment()->play().nodes(0).positions,
+               there = viewer.beside()->play().nodes(0).positions;
+    for (std::size_t i = 0; i < here.size(); ++i) EXPECT_TRUE(glm::distance(here[i], there[i]) < 1e-3f) << i;
 }
 
 TEST_F(ViewerTest, AsManyHandsAsOneLikes) {
