@@ -12,8 +12,8 @@ namespace palpate {
 namespace {
 
 constexpr double width = 960, panel_height = 260, left = 80, right = 190, top = 50, between = 70;
-constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73",
-                                   "#cc79a7", "#e69f00", "#56b4e9"};  // distinguishable also with colour
+constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                   "#e69f00", "#56b4e9", "#555555"};  // distinguishable also with colour
                                                                       // blindness
 
 // Ticks at round numbers that cover a range.
