@@ -140,6 +140,7 @@ void Viewer::hand_over_to(LiveTouch& live) {
 
 // A film shows every frame of the scene, so it does not go on by itself.
 void Viewer::go_on() {
+    hold_still();
     LiveTouch* live = nullptr;
     message_.attempt([&] { live = feeling_.live(session_, may_be_live()); });
     if (!live || filming() || !live->may_go_on()) return;
